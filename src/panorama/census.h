@@ -1,0 +1,48 @@
+// What is in a probe: bad pixels, range, energy, sun.
+#pragma once
+
+#include "panorama/conventions.h"
+#include "panorama/layouts.h"
+#include "panorama/panorama.h"
+
+namespace ibl {
+
+/// Pixels with something wrong in at least one channel.
+struct BadPixels {
+    long count = 0;
+    V2i first{0, 0};   ///< the first one, in rows from the top
+    float extreme = 0; ///< the worst value (most negative; for Inf its sign)
+    V2i extreme_at{0, 0};
+};
+
+/// Sums weigh a pixel by its solid angle, skip what is not finite and pass over the cells of a
+/// cross that hold no face. Energy is radiance times solid angle, W / m^2 for radiance in W / (m^2
+/// sr).
+struct Census {
+    BadPixels nan;
+    BadPixels infinite;
+    BadPixels negative; ///< finite and below zero
+
+    V3d min{0, 0, 0}; ///< of finite values, a channel
+    V3d max{0, 0, 0};
+    V3d energy{0, 0, 0}; ///< total over the sphere
+    V3d mean{0, 0, 0};   ///< energy / 4 pi
+
+    V2i sun_at{0, 0}; ///< the pixel of greatest luminance (0.2125, 0.7154, 0.0721)
+    V3d sun_direction{0, 0, 1};
+    V3d sun_radiance{0, 0, 0};
+};
+
+/// Counts over the whole panorama; the same for any number of threads (0: the machine's).
+Census takeCensus(const Panorama& panorama, int threads = 0);
+
+/// Mends NaN, Inf and negative values channel by channel and returns the number of pixels touched.
+///   negative        0, the nearest radiance there is (they are compression's undershoot)
+///   +Inf            the largest of its valid neighbours (it was too bright to be stored)
+///   NaN, -Inf       the mean of its valid neighbours
+/// Neighbours are the eight around it on the same face, or around the seam of a lat-long; patches
+/// are mended from their rim inwards. A face with nothing valid takes the mean over the panorama.
+/// Throws Error (input) naming `subject` when a channel has no valid value at all.
+long repair(std::string_view subject, Panorama& panorama);
+
+} // namespace ibl

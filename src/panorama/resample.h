@@ -1,0 +1,22 @@
+// From one layout or size to another, by area where it shrinks and by interpolation where it grows.
+#pragma once
+
+#include "panorama/panorama.h"
+
+namespace ibl {
+
+/// The probe in another layout, of face edge or lat-long height `size` >= 1.
+///
+/// Where the new texels are larger than the source's pixels, each is the exact mean of the source
+/// over its solid angle (pixels are areas of constant radiance), so energy is kept to float
+/// rounding. Where they are smaller, the source is interpolated between pixel centres
+/// (`radianceAt`). Between the two, for texel pitches of 1 to 1.25 pixels, there is a smooth blend.
+/// The same extent of the same layout, or the same face edge within the cube family, gives the same
+/// bits. A constant probe stays constant and a non-negative one non-negative. Cells of a cross
+/// outside its faces are 0.
+///
+/// `threads` 0: as many as the machine has; the result does not depend on it.
+/// Throws Error (usage) when size < 1 or the image would not fit in memory.
+Panorama resample(const Panorama& source, Layout to, int size, int threads = 0);
+
+} // namespace ibl
