@@ -37,7 +37,9 @@ struct Image {
     Image() = default;
     /// Pixels are left uninitialised.
     Image(int w, int h, int c = 3)
-        : width(w), height(h), channels(c),
+        : width(w),
+          height(h),
+          channels(c),
           pixels(static_cast<std::size_t>(w) * static_cast<std::size_t>(h) *
                  static_cast<std::size_t>(c)) {}
 
@@ -45,7 +47,9 @@ struct Image {
         return static_cast<std::size_t>(width) * static_cast<std::size_t>(channels);
     }
     float* row(int y) { return pixels.data() + static_cast<std::size_t>(y) * rowFloats(); }
-    const float* row(int y) const { return pixels.data() + static_cast<std::size_t>(y) * rowFloats(); }
+    const float* row(int y) const {
+        return pixels.data() + static_cast<std::size_t>(y) * rowFloats();
+    }
     float* at(int x, int y) { return row(y) + static_cast<std::size_t>(x) * channels; }
     const float* at(int x, int y) const { return row(y) + static_cast<std::size_t>(x) * channels; }
 };

@@ -1,0 +1,50 @@
+// Writing an image in the format that its name asks for.
+#pragma once
+
+#include "image/image.h"
+#include "image/output_set.h"
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace ibl {
+
+/// Type of the channels of OpenEXR files; other formats have their own (TIFF follows it).
+enum class PixelType { half, float32 };
+
+struct WriteOptions {
+    PixelType type = PixelType::float32;
+    /// OpenEXR: "none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"; "" is zip
+    std::string compression;
+    std::string envmap; ///< OpenEXR's envmap attribute: "", "latlong" or "cube"
+    std::string format; ///< "exr", "hdr", "png", ... instead of what the name's extension says
+    int threads = 0;    ///< for encoding; 0: as many as the machine has
+};
+
+/// What a format could not hold. Counts are of values (channels), not of pixels.
+struct WriteLosses {
+    std::size_t above = 0;      ///< brighter than the format's brightest: written as that
+    std::size_t below = 0;      ///< negative where the format has no negatives (written as 0), or
+                                ///< under the lowest that it has (written as that)
+    std::size_t not_number = 0; ///< NaN where the format has none: written as 0
+
+    WriteLosses& operator+=(const WriteLosses& other);
+};
+
+/// Writes RGB or RGBA floats. The format is `options.format`, otherwise the extension of `path`:
+/// exr; hdr, pic and rgbe (Radiance, run-length coded, RGB only); png (8 bits, sRGB); any other
+/// through OpenImageIO. Values are taken as scene-linear. "-" (standard output) needs
+/// `options.format`. The bytes depend on the pixels and options alone, not on time or threads.
+/// Throws outputError if the file cannot be written, the format is unknown or cannot take the
+/// image, or an option does not fit the format; Error(ExitCode::missing) if OpenImageIO is needed
+/// and not there.
+WriteLosses writeImage(OutputSet& outputs, const std::string& path, const Image& image,
+                       const WriteOptions& options = {});
+
+/// The losses in words, one line for each kind that occurred: "12 values above 65504 were written
+/// as 65504". `path` and `options` as given to writeImage: they say what the format's limits are.
+std::vector<std::string> describeLosses(const WriteLosses& losses, const std::string& path,
+                                        const WriteOptions& options = {});
+
+} // namespace ibl
