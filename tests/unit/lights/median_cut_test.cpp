@@ -1,0 +1,214 @@
+#include "lights/lights_json.h"
+#include "lights/median_cut.h"
+
+#include "panorama/conventions.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <random>
+
+namespace ibl {
+namespace {
+
+Image filled(int width, int height, float value) {
+    Image image(width, height, 3);
+    std::fill(image.pixels.begin(), image.pixels.end(), value);
+    return image;
+}
+
+void setPixel(Image& image, int x, int y, float r, float g, float b) {
+    float* rgb = image.at(x, y);
+    rgb[0] = r;
+    rgb[1] = g;
+    rgb[2] = b;
+}
+
+Image noise(int width, int height, unsigned seed) {
+    Image image(width, height, 3);
+    std::mt19937 random(seed);
+    std::lognormal_distribution<float> value(0.f, 2.f);
+    for (float& v : image.pixels)
+        v = value(random);
+    return image;
+}
+
+/// The probe's integral, summed in long double from solid angles taken as cosine differences.
+std::array<long double, 3> integral(const Image& image) {
+    std::array<long double, 3> sum{};
+    const long double pi = std::numbers::pi_v<long double>;
+    for (int j = 0; j < image.height; ++j) {
+        const long double omega =
+            2 * pi / image.width *
+            (std::cos(pi * j / image.height) - std::cos(pi * (j + 1) / image.height));
+        for (int i = 0; i < image.width; ++i) {
+            for (int c = 0; c < 3; ++c)
+                sum[c] += omega * image.at(i, j)[c];
+        }
+    }
+    return sum;
+}
+
+void expectEnergyKept(const Image& image, int count) {
+    const std::vector<Light> lights = medianCut(image, count, 2);
+    const V3d total = totalIrradiance(lights);
+    const auto expected = integral(image);
+    double solid_angle = 0;
+    for (const Light& light : lights) {
+        EXPECT_NEAR(light.direction.length(), 1, 1e-12);
+        solid_angle += light.solid_angle;
+    }
+    for (int c = 0; c < 3; ++c) {
+        EXPECT_NEAR(total[c], static_cast<double>(expected[c]),
+                    1e-12 * std::abs(static_cast<double>(expected[c])))
+            << "count " << count;
+    }
+    EXPECT_LE(solid_angle, 4 * kPi * (1 + 1e-12));
+}
+
+TEST(SummedArea, RectanglesAreTheirPixelsSums) {
+    const Image image = noise(37, 19, 1);
+    const SummedAreaTable table(image, 2);
+    for (const PixelRegion r : {PixelRegion{0, 0, 37, 19}, PixelRegion{5, 3, 7, 9},
+                                PixelRegion{30, 0, 20, 19}, PixelRegion{36, 18, 1, 1}}) {
+        double sum = 0;
+        for (int j = r.y; j < r.y + r.height; ++j) {
+            for (int i = r.x; i < r.x + r.width; ++i) {
+                const float* rgb = image.at(i % 37, j);
+                sum += (0.2125 * rgb[0] + 0.7154 * rgb[1] + 0.0721 * rgb[2]) *
+                       latlongPixelSolidAngle(37, 19, j);
+            }
+        }
+        EXPECT_NEAR(static_cast<double>(table.energy(r)) / table.unitsPerEnergy(), sum,
+                    1e-12 * sum);
+    }
+}
+
+TEST(SummedArea, DimRegionBesideASunIsNotLost) {
+    Image image = filled(256, 128, 1e-3f);
+    setPixel(image, 10, 5, 1e9f, 1e9f, 1e9f);
+    const SummedAreaTable table(image, 2);
+    // Right of and below the sun, so that every table entry used contains it.
+    const PixelRegion dim{200, 60, 3, 2};
+    const double expected =
+        1e-3 * 3 * (latlongPixelSolidAngle(256, 128, 60) + latlongPixelSolidAngle(256, 128, 61));
+    EXPECT_NEAR(static_cast<double>(table.energy(dim)) / table.unitsPerEnergy(), expected,
+                1e-4 * expected);
+}
+
+TEST(MedianCut, KeepsEnergyForEveryCount) {
+    for (const int count : {1, 2, 3, 7, 64, 100, 1024}) {
+        expectEnergyKept(noise(64, 32, 7), count);
+    }
+    expectEnergyKept(noise(101, 53, 8), 50);
+    expectEnergyKept(noise(3, 2, 9), 50);
+    expectEnergyKept(noise(1, 1, 10), 4);
+}
+
+TEST(MedianCut, KeepsEnergyBesideASun) {
+    Image image = filled(128, 64, 1e-3f);
+    setPixel(image, 0, 0, 1e9f, 5e8f, 1e8f);
+    expectEnergyKept(image, 64);
+}
+
+TEST(MedianCut, NegativePixelsCountInTheColours) {
+    Image image = filled(64, 32, 1.f);
+    setPixel(image, 20, 16, -100.f, -50.f, -10.f);
+    expectEnergyKept(image, 16);
+}
+
+TEST(MedianCut, GivesTheCountAsked) {
+    const Image image = noise(64, 32, 3);
+    for (const int count : {1, 2, 5, 16, 33, 512}) {
+        EXPECT_EQ(medianCut(image, count, 2).size(), static_cast<std::size_t>(count));
+    }
+}
+
+TEST(MedianCut, UniformProbeGivesRegionsOfEqualSolidAngle) {
+    const Image image = filled(512, 256, 0.7f);
+    for (const int count : {2, 4, 16, 64, 256}) {
+        const double wanted = 4 * kPi / count;
+        for (const Light& light : medianCut(image, count, 2)) {
+            // Within a row or a column of the region's own rectangle.
+            EXPECT_NEAR(light.solid_angle, wanted, 0.16 * wanted) << count;
+        }
+    }
+}
+
+TEST(MedianCut, CutsAreAsEvenAsPixelsAllow) {
+    const Image image = noise(256, 128, 4);
+    const SummedAreaTable table(image, 1);
+    const auto regions = medianCutRegions(table, 16);
+    const double share = static_cast<double>(table.energy({0, 0, 256, 128})) / 16;
+    for (const PixelRegion& r : regions) {
+        EXPECT_NEAR(static_cast<double>(table.energy(r)), share, 0.2 * share);
+    }
+}
+
+TEST(MedianCut, OneLampIsFoundAtItsPixelsCentroid) {
+    for (const auto& [x, y] : {std::pair{100, 40}, {0, 40}, {255, 127}, {7, 0}}) {
+        Image image = filled(256, 128, 0.f);
+        setPixel(image, x, y, 10.f, 20.f, 30.f);
+        const std::vector<Light> lights = medianCut(image, 16, 2);
+        ASSERT_EQ(lights.size(), 1u);
+        const V3d expected = latlongDirection((x + 0.5) / 256, (y + 0.5) / 128);
+        EXPECT_GT(lights[0].direction.dot(expected), 1 - 1e-5);
+        const double omega = latlongPixelSolidAngle(256, 128, y);
+        EXPECT_NEAR(lights[0].irradiance.x, 10 * omega, 1e-12);
+        EXPECT_NEAR(lights[0].solid_angle, omega, 1e-12);
+    }
+}
+
+TEST(MedianCut, ASunAcrossTheSeamStaysWhole) {
+    Image image = filled(64, 32, 1e-3f);
+    for (const int x : {62, 63, 0, 1})
+        setPixel(image, x, 16, 1000.f, 1000.f, 1000.f);
+    // One light: its centroid is the sun's middle, on the -Z side, not the image's middle.
+    const std::vector<Light> lights = medianCut(image, 1, 1);
+    ASSERT_EQ(lights.size(), 1u);
+    EXPECT_LT(lights[0].direction.z, -0.99);
+    // And the circle is opened elsewhere than through the sun.
+    const auto regions = medianCutRegions(SummedAreaTable(image, 1), 1);
+    EXPECT_EQ(regions[0].x, 2);
+}
+
+TEST(MedianCut, BlackProbeHasNoLights) {
+    EXPECT_TRUE(medianCut(filled(64, 32, 0.f), 16, 2).empty());
+}
+
+TEST(MedianCut, SameLightsForAnyThreadCount) {
+    const Image image = noise(301, 150, 5);
+    EXPECT_EQ(lightsJson(medianCut(image, 77, 1), "x", "median"),
+              lightsJson(medianCut(image, 77, 5), "x", "median"));
+}
+
+TEST(MedianCut, DirectionsLieInTheirRegions) {
+    for (const Light& light : medianCut(noise(256, 128, 6), 256, 2)) {
+        const double latitude = std::asin(light.direction.y) * 180 / kPi;
+        double longitude = std::atan2(light.direction.x, light.direction.z) * 180 / kPi;
+        if (longitude < light.longitude[0]) longitude += 360;
+        EXPECT_GE(longitude, light.longitude[0] - 1e-9);
+        EXPECT_LE(longitude, light.longitude[1] + 1e-9);
+        // The centroid of a wide region bulges towards the nearer pole, by less than 20 degrees.
+        EXPECT_GE(latitude, light.latitude[0] - 20);
+        EXPECT_LE(latitude, light.latitude[1] + 20);
+    }
+}
+
+TEST(LightsJson, NamesUnitsAndReadsBack) {
+    const std::vector<Light> lights = medianCut(noise(32, 16, 11), 5, 1);
+    const auto json = nlohmann::json::parse(lightsJson(lights, "a \"quoted\"\xff name", "median"));
+    EXPECT_TRUE(json.at("axes").is_string());
+    EXPECT_EQ(json.at("units").at("solid_angle"), "steradian");
+    ASSERT_EQ(json.at("lights").size(), 5u);
+    for (std::size_t i = 0; i < 5; ++i) {
+        const auto& light = json["lights"][i];
+        EXPECT_EQ(light.at("direction")[1].get<double>(), lights[i].direction.y);
+        EXPECT_EQ(light.at("irradiance")[2].get<double>(), lights[i].irradiance.z);
+        EXPECT_EQ(light.at("solid_angle").get<double>(), lights[i].solid_angle);
+        EXPECT_EQ(light.at("region").at("longitude")[0].get<double>(), lights[i].longitude[0]);
+    }
+}
+
+} // namespace
+} // namespace ibl
