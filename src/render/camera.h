@@ -5,6 +5,7 @@
 
 namespace ibl {
 
+using Imath::V2d;
 using Imath::V3d;
 
 /// Looks from `eye` to `target`, `up` upwards in the picture.
@@ -22,14 +23,17 @@ Camera orbitCamera(double azimuth, double elevation, double distance, const V3d&
                    double fov);
 
 /// Rays through a frame: pixel coordinates (x right, y down, centres at +0.5) give the direction
-/// `corner + x * step_x + y * step_y`, which is not normalised; its part along the view is 1.
+/// `forward + (x - centre.x) step_x + (y - centre.y) step_y`, whose part along the view is 1.
 struct CameraRays {
     V3d eye;
-    V3d corner;
+    V3d forward;
     V3d step_x;
     V3d step_y;
+    V2d centre;
 
-    V3d direction(double x, double y) const { return corner + step_x * x + step_y * y; }
+    V3d direction(double x, double y) const {
+        return forward + step_x * (x - centre.x) + step_y * (y - centre.y);
+    }
 };
 
 /// Rays of a width x height frame of square pixels.

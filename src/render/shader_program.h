@@ -1,0 +1,34 @@
+// GL programs from the shader files. Internal to the render layer.
+#pragma once
+
+#include "render/gl_objects.h"
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace ibl {
+
+/// A file of the shader folder as it was when the program was built.
+struct EmbeddedShader {
+    std::string_view name;
+    std::string_view text;
+};
+std::span<const EmbeddedShader> embeddedShaders();
+
+/// What a program is made of: a vertex shader file, the fragment shader as files that follow one
+/// another, and preprocessor definitions ("NAME value") ahead of all.
+struct ProgramParts {
+    std::string_view vertex;
+    std::vector<std::string_view> fragment;
+    std::vector<std::string> definitions;
+};
+
+/// Compiles and links. A file that stands in `folder` replaces the embedded one of its name.
+/// Throws Error (input) naming file and line where the compiler stopped.
+Program makeProgram(const ProgramParts& parts, const std::optional<std::filesystem::path>& folder);
+
+} // namespace ibl
