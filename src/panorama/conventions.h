@@ -53,8 +53,7 @@ inline V2d latlongPoint(const V3d& d) {
 /// Solid angle of each pixel of row j in a W x H lat-long image, steradians.
 /// cos a - cos b is taken as 2 sin((a+b)/2) sin((b-a)/2), which keeps its precision at the poles.
 inline double latlongPixelSolidAngle(int width, int height, int j) {
-    return 2 * kPi / width * 2 * std::sin(kPi * (j + 0.5) / height) *
-           std::sin(0.5 * kPi / height);
+    return 2 * kPi / width * 2 * std::sin(kPi * (j + 0.5) / height) * std::sin(0.5 * kPi / height);
 }
 
 /// A point on the cube: face 0..5 (+X -X +Y -Y +Z -Z) and s, t in [-1, 1].
@@ -67,12 +66,18 @@ struct CubePoint {
 /// Direction (not normalised: its largest component is 1) of a point on the cube.
 inline V3d cubeDirection(const CubePoint& p) {
     switch (p.face) {
-    case 0: return {1, -p.t, -p.s};
-    case 1: return {-1, -p.t, p.s};
-    case 2: return {p.s, 1, p.t};
-    case 3: return {p.s, -1, -p.t};
-    case 4: return {p.s, -p.t, 1};
-    default: return {-p.s, -p.t, -1};
+    case 0:
+        return {1, -p.t, -p.s};
+    case 1:
+        return {-1, -p.t, p.s};
+    case 2:
+        return {p.s, 1, p.t};
+    case 3:
+        return {p.s, -1, -p.t};
+    case 4:
+        return {p.s, -p.t, 1};
+    default:
+        return {-p.s, -p.t, -1};
     }
 }
 
@@ -93,16 +98,19 @@ inline V3d cubeTexelDirection(int face, int i, int j, int edge) {
     return cubeDirection({face, (2.0 * i + 1) / edge - 1, (2.0 * j + 1) / edge - 1});
 }
 
-/// Solid angle of texel (i, j) of an N x N cube face, exact, steradians: the alternating sum over its
-/// corners of the integral of (1 + s^2 + t^2)^(-3/2), which is
-/// atan(s t / sqrt(1 + s^2 + t^2)).
-inline double cubeTexelSolidAngle(int i, int j, int edge) {
+/// Solid angle of a rectangle on a cube face, exact, steradians: the alternating sum over its
+/// corners of the integral of (1 + s^2 + t^2)^(-3/2), which is atan(s t / sqrt(1 + s^2 + t^2)).
+inline double cubeRectangleSolidAngle(double s0, double s1, double t0, double t1) {
     const auto corner = [](double s, double t) {
         return std::atan2(s * t, std::sqrt(s * s + t * t + 1));
     };
-    const double s0 = 2.0 * i / edge - 1, s1 = 2.0 * (i + 1) / edge - 1;
-    const double t0 = 2.0 * j / edge - 1, t1 = 2.0 * (j + 1) / edge - 1;
     return corner(s0, t0) - corner(s0, t1) - corner(s1, t0) + corner(s1, t1);
+}
+
+/// Solid angle of texel (i, j) of an N x N cube face, exact, steradians.
+inline double cubeTexelSolidAngle(int i, int j, int edge) {
+    return cubeRectangleSolidAngle(2.0 * i / edge - 1, 2.0 * (i + 1) / edge - 1, 2.0 * j / edge - 1,
+                                   2.0 * (j + 1) / edge - 1);
 }
 
 } // namespace ibl
