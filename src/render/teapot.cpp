@@ -9,6 +9,7 @@ namespace ibl {
 namespace {
 
 using Imath::Box3d;
+using Imath::V2d;
 using Patch = std::array<std::array<V3d, 4>, 4>;
 
 // Newell's control points, Z up. Rim, lid, body and bottom are turned from a profile of (radius,

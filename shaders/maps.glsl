@@ -1,0 +1,9 @@
+// The maps of the scene. One that nothing reads is not bound.
+layout(binding = 0) uniform PROBE_SAMPLER probe;
+layout(binding = 1) uniform DIFFUSE_SAMPLER diffuse;
+
+// Radiance that arrives from a direction.
+vec3 probeRadiance(vec3 direction) { return lookUp(probe, PROBE_BORDER, direction); }
+
+// Irradiance / pi of a surface with that normal.
+vec3 diffuseRadiance(vec3 normal) { return lookUp(diffuse, DIFFUSE_BORDER, normal); }

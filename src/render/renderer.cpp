@@ -1,0 +1,396 @@
+#include "render/renderer.h"
+
+#include "core/error.h"
+#include "render/panorama_texture.h"
+#include "render/sample_pattern.h"
+#include "render/shader_program.h"
+
+#include <Imath/ImathMatrix.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace ibl {
+namespace {
+
+using Imath::M44f;
+using Imath::V2i;
+
+constexpr std::array<ShaderInfo, 3> kShaders{{
+    {Shader::mirror, "mirror", "mirror.frag", true, false},
+    {Shader::diffuse, "diffuse", "diffuse.frag", false, true},
+    {Shader::mirrorDiffuse, "mirror-diffuse", "mirror_diffuse.frag", true, true},
+}};
+
+// A frame is drawn in tiles, so that memory beside the picture itself does not grow with it.
+constexpr int kTileWidth = 1024, kTileHeight = 512;
+
+Error usage(const std::string& problem) {
+    return {ExitCode::usage, "render: " + problem};
+}
+
+void setUniform(const Program& p, const char* name, const V3d& v) {
+    const V3f f(v);
+    glProgramUniform3f(p.id(), glGetUniformLocation(p.id(), name), f.x, f.y, f.z);
+}
+void setUniform(const Program& p, const char* name, const V2d& v) {
+    glProgramUniform2f(p.id(), glGetUniformLocation(p.id(), name), static_cast<float>(v.x),
+                       static_cast<float>(v.y));
+}
+void setUniform(const Program& p, const char* name, const V2i& v) {
+    glProgramUniform2i(p.id(), glGetUniformLocation(p.id(), name), v.x, v.y);
+}
+void setUniform(const Program& p, const char* name, double v) {
+    glProgramUniform1f(p.id(), glGetUniformLocation(p.id(), name), static_cast<float>(v));
+}
+void setUniform(const Program& p, const char* name, const M44f& m) {
+    glProgramUniformMatrix4fv(p.id(), glGetUniformLocation(p.id(), name), 1, GL_FALSE, m[0]);
+}
+
+// World to clip space for a frame whose row 0 is its upper one (y is down), the near and far planes
+// about the box. Imath's matrices multiply row vectors from the right; that is GL's column order.
+// Nothing when the box is behind the camera.
+std::optional<M44f> clipFromWorld(const CameraRays& rays, const Box3f& box, const V2d& jitter) {
+    double nearest = std::numeric_limits<double>::infinity(), farthest = -nearest;
+    for (int corner = 0; corner < 8; ++corner) {
+        const V3d p(corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
+                    corner & 4 ? box.max.z : box.min.z);
+        const double depth = rays.forward.dot(p - rays.eye);
+        nearest = std::min(nearest, depth);
+        farthest = std::max(farthest, depth);
+    }
+    if (farthest <= 0) return std::nullopt;
+    farthest *= 1.001;
+    nearest = std::max(nearest * 0.999, farthest * 1e-5);
+
+    // Pixel x of a point at q from the eye is centre.x + (q . step_x) / |step_x|^2 / depth.
+    const V3d x = rays.step_x / (rays.step_x.length2() * rays.centre.x);
+    const V3d y = rays.step_y / (rays.step_y.length2() * rays.centre.y);
+    const V3d shift(jitter.x / rays.centre.x, jitter.y / rays.centre.y, 0);
+    const double a = (farthest + nearest) / (farthest - nearest);
+    const double b = -2 * farthest * nearest / (farthest - nearest);
+    const V3d& z = rays.forward;
+    const std::array<V3d, 4> rows{x - z * shift.x, y - z * shift.y, z * a, z};
+    M44f m;
+    for (int row = 0; row < 4; ++row) {
+        for (int i = 0; i < 3; ++i)
+            m[i][row] = static_cast<float>(rows[row][i]);
+        m[3][row] = static_cast<float>(-rows[row].dot(rays.eye) + (row == 2 ? b : 0));
+    }
+    return m;
+}
+
+struct MeshBuffers {
+    Buffer positions, normals, indices;
+    VertexArray array;
+    GLsizei count = 0;
+};
+
+MeshBuffers uploadMesh(const Mesh& mesh) {
+    if (mesh.indices.size() > static_cast<std::size_t>(std::numeric_limits<GLsizei>::max())) {
+        throw usage("the object has more than 715 million triangles; reduce it");
+    }
+    const auto bytes = [](const auto& v) {
+        return static_cast<GLsizeiptr>(v.size() * sizeof v[0]);
+    };
+    MeshBuffers buffers{makeBuffer(bytes(mesh.positions), mesh.positions.data()),
+                        makeBuffer(bytes(mesh.normals), mesh.normals.data()),
+                        makeBuffer(bytes(mesh.indices), mesh.indices.data()),
+                        {},
+                        static_cast<GLsizei>(mesh.indices.size())};
+    GLuint array = 0;
+    glCreateVertexArrays(1, &array);
+    buffers.array = VertexArray(array);
+    glVertexArrayElementBuffer(array, buffers.indices.id());
+    for (const GLuint attribute : {0u, 1u}) {
+        const Buffer& source = attribute == 0 ? buffers.positions : buffers.normals;
+        glVertexArrayVertexBuffer(array, attribute, source.id(), 0, sizeof(V3f));
+        glVertexArrayAttribFormat(array, attribute, 3, GL_FLOAT, GL_FALSE, 0);
+        glEnableVertexArrayAttrib(array, attribute);
+    }
+    checkGl("uploading the object");
+    return buffers;
+}
+
+} // namespace
+
+std::span<const ShaderInfo> shaderTable() {
+    return kShaders;
+}
+
+const ShaderInfo& shaderInfo(Shader shader) {
+    return *std::find_if(kShaders.begin(), kShaders.end(),
+                         [&](const ShaderInfo& info) { return info.shader == shader; });
+}
+
+std::optional<Shader> shaderFromName(std::string_view name) {
+    for (const ShaderInfo& info : kShaders) {
+        if (info.name == name) return info.shader;
+    }
+    return std::nullopt;
+}
+
+bool needsProbe(const Material& material, const Background& background) {
+    return shaderInfo(material.shader).reads_probe ||
+           std::holds_alternative<ProbeBackground>(background);
+}
+
+bool needsDiffuse(const Material& material) {
+    return shaderInfo(material.shader).reads_diffuse;
+}
+
+struct Renderer::State {
+    FrameOptions options;
+    bool opaque = true;
+    V3f clear_color{0, 0, 0};
+    Box3f box;
+    PanoramaTexture probe, diffuse;
+    Texture image;
+    std::optional<MeshBuffers> mesh;
+
+    VertexArray no_vertices;
+    Program surface, background, accumulate;
+    // One tile: a sample, the sum of samples, and the picture as it is read.
+    Texture sample, sum, floats, bytes;
+    Renderbuffer depth;
+    Framebuffer to_sample, to_sum, to_floats, to_bytes;
+
+    void uploadScene(const Scene& scene);
+    void makePrograms(const Scene& scene);
+    void makeTargets();
+
+    V2i tileSize() const;
+    void drawFullscreen(const Program& program) const;
+    void drawSample(const CameraRays& rays, const V2i& tile, const V2d& jitter) const;
+    void drawTile(const CameraRays& rays, const V2i& tile) const;
+    Program resolveProgram(const Display& display, bool to_bytes) const;
+    template <class T>
+    void drawFrame(const Camera& camera, const Display& display, T* pixels);
+};
+
+void Renderer::State::uploadScene(const Scene& scene) {
+    if (needsProbe(scene.material, scene.background)) {
+        if (!scene.probe) throw usage("the picture needs a probe; give one");
+        probe = uploadPanorama(*scene.probe, "probe");
+    }
+    if (needsDiffuse(scene.material)) {
+        if (!scene.diffuse) throw usage("the shader needs a diffuse map; give one");
+        diffuse = uploadPanorama(*scene.diffuse, "diffuse map");
+    }
+    if (const auto* picture = std::get_if<ImageBackground>(&scene.background)) {
+        if (picture->width != options.width || picture->height != options.height) {
+            throw usage("the background image is not of the frame's size; resize one of them");
+        }
+        image = uploadImage(*picture, "background image");
+    }
+    if (const auto* color = std::get_if<ColorBackground>(&scene.background)) clear_color = *color;
+    opaque = !std::holds_alternative<NoBackground>(scene.background);
+    box = bounds(scene.object);
+    if (scene.object.mesh) mesh = uploadMesh(*scene.object.mesh);
+}
+
+void Renderer::State::makePrograms(const Scene& scene) {
+    std::vector<std::string> definitions = probe.definitions("PROBE");
+    for (const std::string& d : diffuse.definitions("DIFFUSE"))
+        definitions.push_back(d);
+    const auto& folder = options.shader_folder;
+    const auto program = [&](std::string_view vertex, std::vector<std::string_view> fragment) {
+        return makeProgram({vertex, std::move(fragment), definitions}, folder);
+    };
+    surface =
+        program(mesh ? "mesh.vert" : "fullscreen.vert",
+                {"view.glsl", "lookup.glsl", "maps.glsl", shaderInfo(scene.material.shader).file,
+                 mesh ? "mesh_surface.frag" : "sphere_surface.frag"});
+    setUniform(surface, "base_color", V3d(scene.material.base_color));
+    setUniform(surface, "reflectivity", scene.material.reflectivity);
+    if (std::holds_alternative<ProbeBackground>(scene.background)) {
+        background = program("fullscreen.vert",
+                             {"view.glsl", "lookup.glsl", "maps.glsl", "background_probe.frag"});
+    } else if (image) {
+        background = program("fullscreen.vert", {"background_image.frag"});
+    }
+    if (options.samples > 1) accumulate = program("fullscreen.vert", {"accumulate.frag"});
+}
+
+V2i Renderer::State::tileSize() const {
+    return {std::min(options.width, kTileWidth), std::min(options.height, kTileHeight)};
+}
+
+void Renderer::State::makeTargets() {
+    const V2i size = tileSize();
+    if (mesh) depth = makeRenderbuffer(GL_DEPTH_COMPONENT32F, size.x, size.y);
+    sample = makeTexture(GL_TEXTURE_2D, GL_RGBA32F, size.x, size.y);
+    to_sample = makeFramebuffer(sample, depth.id());
+    if (options.samples > 1) {
+        sum = makeTexture(GL_TEXTURE_2D, GL_RGBA32F, size.x, size.y);
+        to_sum = makeFramebuffer(sum);
+    }
+    GLuint array = 0;
+    glCreateVertexArrays(1, &array);
+    no_vertices = VertexArray(array);
+}
+
+void Renderer::State::drawFullscreen(const Program& program) const {
+    glUseProgram(program.id());
+    glBindVertexArray(no_vertices.id());
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+// One sample a pixel of a tile. `jitter` is the sample's place from the pixel's centre.
+void Renderer::State::drawSample(const CameraRays& rays, const V2i& tile, const V2d& jitter) const {
+    glBindFramebuffer(GL_FRAMEBUFFER, to_sample.id());
+    glViewport(-tile.x, -tile.y, options.width, options.height);
+    const V2d offset = V2d(tile) + jitter - rays.centre;
+    const auto setView = [&](const Program& program) {
+        setUniform(program, "pixel_offset", offset);
+        setUniform(program, "forward", rays.forward);
+        setUniform(program, "step_x", rays.step_x);
+        setUniform(program, "step_y", rays.step_y);
+    };
+    if (background) {
+        setView(background);
+        setUniform(background, "tile_origin", tile);
+        drawFullscreen(background);
+    } else {
+        const std::array<float, 4> color{clear_color.x, clear_color.y, clear_color.z,
+                                         opaque ? 1.f : 0.f};
+        glClearBufferfv(GL_COLOR, 0, color.data());
+    }
+    setView(surface);
+    if (!mesh) {
+        setUniform(surface, "eye", rays.eye);
+        setUniform(surface, "moment_forward", rays.eye.cross(rays.forward));
+        setUniform(surface, "moment_x", rays.eye.cross(rays.step_x));
+        setUniform(surface, "moment_y", rays.eye.cross(rays.step_y));
+        drawFullscreen(surface);
+        return;
+    }
+    const auto clip_from_world = clipFromWorld(rays, box, jitter);
+    if (!clip_from_world) return;
+    setUniform(surface, "clip_from_world", *clip_from_world);
+    const float far_depth = 1;
+    glClearBufferfv(GL_DEPTH, 0, &far_depth);
+    glUseProgram(surface.id());
+    glBindVertexArray(mesh->array.id());
+    glEnable(GL_DEPTH_TEST);
+    glDrawElements(GL_TRIANGLES, mesh->count, GL_UNSIGNED_INT, nullptr);
+    glDisable(GL_DEPTH_TEST);
+}
+
+// All samples of a tile; they end up in `sum`, or in `sample` when there is but one.
+void Renderer::State::drawTile(const CameraRays& rays, const V2i& tile) const {
+    bool first = true;
+    for (const V2d& point : samplePattern(options.samples)) {
+        glBindTextureUnit(0, probe.texture.id());
+        drawSample(rays, tile, point - V2d(0.5));
+        if (!accumulate) return;
+        glBindFramebuffer(GL_FRAMEBUFFER, to_sum.id());
+        glBindTextureUnit(0, sample.id());
+        if (!first) glEnable(GL_BLEND);
+        drawFullscreen(accumulate);
+        glDisable(GL_BLEND);
+        first = false;
+    }
+}
+
+Program Renderer::State::resolveProgram(const Display& display, bool as_bytes) const {
+    const double exposure = std::exp2(display.exposure);
+    if (!(exposure > 0 && exposure < std::numeric_limits<float>::max())) {
+        throw usage("the exposure is beyond what floats hold; stay within 120 stops");
+    }
+    const bool scurve = display.tone_map == ToneMap::scurve;
+    if (scurve && !(display.scurve_n > 0 && display.scurve_sigma > 0)) {
+        throw usage("the S-curve's parameters are not positive; give positive ones");
+    }
+    const auto flag = [](const char* name, bool on) {
+        return std::string(name) + (on ? " 1" : " 0");
+    };
+    Program program =
+        makeProgram({"fullscreen.vert",
+                     {"resolve.frag"},
+                     {flag("STRAIGHT", !opaque), flag("SCURVE", scurve), flag("BYTES", as_bytes)}},
+                    options.shader_folder);
+    // Each sample has gone into the sum by the weight 2^-k, where 2^k >= samples.
+    const double weight = std::exp2(-std::ceil(std::log2(options.samples)));
+    if (accumulate) setUniform(accumulate, "weight", weight);
+    setUniform(program, "sum_weight", weight * options.samples);
+    setUniform(program, "exposure", exposure);
+    setUniform(program, "scurve_n", display.scurve_n);
+    setUniform(program, "scurve_sigma", display.scurve_sigma);
+    return program;
+}
+
+template <class T>
+void Renderer::State::drawFrame(const Camera& camera, const Display& display, T* pixels) {
+    constexpr bool as_bytes = sizeof(T) == 1;
+    const CameraRays rays = cameraRays(camera, options.width, options.height);
+    const Program resolve = resolveProgram(display, as_bytes);
+    const V2i size = tileSize();
+    // Bytes are made on the device: reading them from a float target costs thirty times as much.
+    Texture& target = as_bytes ? bytes : floats;
+    Framebuffer& to_target = as_bytes ? to_bytes : to_floats;
+    if (!target) {
+        target = makeTexture(GL_TEXTURE_2D, as_bytes ? GL_RGBA8 : GL_RGBA32F, size.x, size.y);
+        to_target = makeFramebuffer(target);
+    }
+    glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
+    glFrontFace(GL_CW); // counter-clockwise, in a frame whose y is down
+    glBlendFunc(GL_ONE, GL_ONE);
+    glBindTextureUnit(1, diffuse.texture.id());
+    glBindTextureUnit(2, image.id());
+    glPixelStorei(GL_PACK_ROW_LENGTH, options.width);
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    const std::size_t channels = opaque ? 3 : 4;
+    for (int y = 0; y < options.height; y += size.y) {
+        for (int x = 0; x < options.width; x += size.x) {
+            drawTile(rays, {x, y});
+            glBindFramebuffer(GL_FRAMEBUFFER, to_target.id());
+            glViewport(0, 0, size.x, size.y);
+            glBindTextureUnit(0, accumulate ? sum.id() : sample.id());
+            drawFullscreen(resolve);
+            const auto first = static_cast<std::size_t>(y) * options.width + x;
+            glReadPixels(0, 0, std::min(size.x, options.width - x),
+                         std::min(size.y, options.height - y), opaque ? GL_RGB : GL_RGBA,
+                         as_bytes ? GL_UNSIGNED_BYTE : GL_FLOAT, pixels + first * channels);
+        }
+    }
+    checkGl("drawing the picture");
+}
+
+Renderer::Renderer(const EglContext&, const Scene& scene, const FrameOptions& options)
+    : state_(std::make_unique<State>()) {
+    std::array<GLint, 2> limit{};
+    glGetIntegerv(GL_MAX_VIEWPORT_DIMS, limit.data());
+    if (options.width < 1 || options.height < 1 || options.width > limit[0] ||
+        options.height > limit[1]) {
+        throw usage("this device draws frames from 1x1 to " + std::to_string(limit[0]) + "x" +
+                    std::to_string(limit[1]) + " pixels; choose a size among these");
+    }
+    if (options.samples < 1) throw usage("there is no picture of no samples; give at least one");
+    state_->options = options;
+    state_->uploadScene(scene);
+    state_->makePrograms(scene);
+    state_->makeTargets();
+}
+
+Renderer::~Renderer() = default;
+Renderer::Renderer(Renderer&&) noexcept = default;
+Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+
+Image Renderer::renderLinear(const Camera& camera, const Display& display) {
+    Image image(state_->options.width, state_->options.height, state_->opaque ? 3 : 4);
+    state_->drawFrame(camera, display, image.pixels.data());
+    return image;
+}
+
+ByteImage Renderer::renderBytes(const Camera& camera, const Display& display) {
+    const FrameOptions& options = state_->options;
+    ByteImage image{options.width, options.height, state_->opaque ? 3 : 4, {}};
+    image.pixels.resize(static_cast<std::size_t>(options.width) * options.height * image.channels);
+    state_->drawFrame(camera, display, image.pixels.data());
+    return image;
+}
+
+} // namespace ibl
