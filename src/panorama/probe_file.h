@@ -1,6 +1,8 @@
 // Probes in files: one image, or six faces in six images.
 #pragma once
 
+#include "image/read.h"
+#include "image/write.h"
 #include "panorama/panorama.h"
 
 #include <optional>
@@ -8,9 +10,6 @@
 #include <vector>
 
 namespace ibl {
-
-class OutputSet;
-struct WriteOptions;
 
 struct ReadProbeOptions {
     std::optional<Layout> from; ///< untold: from shape and metadata
@@ -21,8 +20,9 @@ struct ReadProbeOptions {
 struct ProbeFile {
     Panorama panorama;
     std::vector<std::string> files; ///< names read, for dependency files; none for built-in probes
-    std::vector<std::string>
-        notes; ///< what was not silent: exposure, alpha ignored, layout told, ...
+    std::vector<std::string> notes; ///< what was not silent: exposure, alpha ignored, ...
+    ImageFile details; ///< format, exposure, layers (of the first face); its image is empty, for
+                       ///< the pixels are the panorama's
 };
 
 /// Reads a probe: a file, `-` (standard input), `builtin:NAME`, or six faces: DIR/p.exr stands for
@@ -36,7 +36,7 @@ std::vector<std::string> probeFileNames(const std::string& path, Layout layout);
 
 /// Adds a probe to the set of outputs, under the names above. The exr layouts set OpenEXR's envmap
 /// attribute, and are refused (Error, usage) in any other format.
-void writeProbe(OutputSet& outputs, const std::string& path, const Panorama& panorama,
-                const WriteOptions& options);
+WriteLosses writeProbe(OutputSet& outputs, const std::string& path, const Panorama& panorama,
+                       const WriteOptions& options);
 
 } // namespace ibl

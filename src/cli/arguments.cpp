@@ -1,0 +1,122 @@
+#include "cli/arguments.h"
+
+#include <string>
+#include <vector>
+
+namespace ibl {
+namespace {
+
+/// Accepts a layout's name and nothing else; CLI11 shows the names in the help.
+CLI::Option* addLayout(CLI::App& app, const std::string& name, Layout& layout,
+                       const std::string& help) {
+    return app
+        .add_option_function<std::string>(
+            name, [&layout](const std::string& text) { layout = *layoutFromName(text); }, help)
+        ->check(CLI::IsMember(layoutNames()))
+        ->type_name("LAYOUT");
+}
+
+} // namespace
+
+void bindCommon(CLI::App& app, CommonOptions& options) {
+    app.add_option("--threads", options.threads, "Threads to use (0: as many as the machine has)")
+        ->check(CLI::Range(0, 1024))
+        ->type_name("N")
+        ->capture_default_str()
+        ->group("Run");
+    app.add_option("--report", options.report, "Write what was done and how long it took as JSON")
+        ->type_name("FILE")
+        ->group("Run");
+    app.add_option("--depfile", options.depfile, "Write a makefile rule of outputs and inputs")
+        ->type_name("FILE")
+        ->group("Run");
+    CLI::Option* quiet =
+        app.add_flag("--quiet", options.quiet, "No notes on standard error, only errors")
+            ->group("Run");
+    app.add_flag("--verbose", options.verbose, "Say on standard error what is done")
+        ->excludes(quiet)
+        ->group("Run");
+}
+
+void bindProbe(CLI::App& app, ProbeOptions& options, const std::string& as) {
+    app.add_option(as, options.input,
+                   "The probe: a file, - for standard input, or builtin:sky, builtin:compass, "
+                   "builtin:furnace")
+        ->required()
+        ->type_name(as == "IN" ? "" : "IN");
+    app.add_option_function<std::string>(
+           "--from", [&options](const std::string& text) { options.from = layoutFromName(text); },
+           "Layout of the probe (default: told from shape and metadata)")
+        ->check(CLI::IsMember(layoutNames()))
+        ->type_name("LAYOUT")
+        ->group("Input");
+    app.add_option("--layer", options.layer, "Layer or part of a multi-layer EXR to read")
+        ->type_name("NAME")
+        ->group("Input");
+    app.add_flag("--repair", options.repair,
+                 "Mend NaN, infinite and negative pixels from their neighbours (default: NaN and "
+                 "infinite are refused, negative kept)")
+        ->group("Input");
+}
+
+void bindType(CLI::App& app, PixelType& type) {
+    app.add_option_function<std::string>(
+           "--type",
+           [&type](const std::string& text) {
+               type = text == "half" ? PixelType::half : PixelType::float32;
+           },
+           "Pixels of EXR files (default float)")
+        ->check(CLI::IsMember({"half", "float"}))
+        ->type_name("TYPE")
+        ->group("Output");
+}
+
+void bindImageOutput(CLI::App& app, ImageOutputOptions& options) {
+    app.add_option("-o,--output", options.output, "File to write, - for standard output")
+        ->required()
+        ->type_name("OUT")
+        ->group("Output");
+    app.add_option("--format", options.format,
+                   "Format instead of what the extension says: exr, hdr, png, tif ... (required on "
+                   "standard output)")
+        ->type_name("FORMAT")
+        ->group("Output");
+    bindType(app, options.type);
+    app.add_option("--compression", options.compression, "Compression of EXR files (default zip)")
+        ->check(CLI::IsMember(
+            {"none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"}))
+        ->type_name("NAME")
+        ->group("Output");
+}
+
+void bindTarget(CLI::App& app, Layout& to, std::optional<int>& size,
+                const std::string& default_size) {
+    addLayout(app, "--to", to, "Layout of the result (default faces)")->group("Output");
+    app.add_option("--size", size,
+                   "Face edge, or height of a lat-long, in pixels (default: " + default_size + ")")
+        ->check(CLI::Range(1, kMaxSize))
+        ->type_name("N")
+        ->group("Output");
+}
+
+CLI::Option* addTriple(CLI::App& app, const std::string& names, Imath::V3d& value,
+                       const std::string& help, const std::string& type_name) {
+    return app
+        .add_option_function<std::vector<double>>(
+            names, [&value](const std::vector<double>& v) { value = Imath::V3d(v[0], v[1], v[2]); },
+            help)
+        ->delimiter(',')
+        ->expected(3)
+        ->type_name(type_name);
+}
+
+WriteOptions writeOptions(const ImageOutputOptions& output, const CommonOptions& common) {
+    WriteOptions options;
+    options.type = output.type;
+    options.compression = output.compression;
+    options.format = output.format;
+    options.threads = common.threads;
+    return options;
+}
+
+} // namespace ibl

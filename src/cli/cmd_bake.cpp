@@ -1,0 +1,146 @@
+#include "cli/arguments.h"
+#include "cli/commands.h"
+#include "cli/prefiltering.h"
+#include "cli/session.h"
+
+#include "core/error.h"
+#include "lights/lights_json.h"
+#include "lights/median_cut.h"
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <memory>
+
+namespace ibl {
+namespace {
+
+struct BakeOptions {
+    CommonOptions common;
+    ProbeOptions probe;
+    QualityOptions quality;
+    PixelType type = PixelType::float32;
+    std::string folder;
+    int size = 256;
+    std::optional<int> levels;
+    int lights = 64;
+};
+
+/// The folder of a bake: made if it is not there, and taken away again if nothing came of it.
+class BakeFolder {
+public:
+    explicit BakeFolder(const std::string& path) : path_(path) {
+        std::error_code problem;
+        made_ = std::filesystem::create_directory(path_, problem);
+        if (problem) throw outputError(path, "the folder cannot be made: " + problem.message());
+        if (!std::filesystem::is_directory(path_)) throw outputError(path, "is not a folder");
+    }
+    ~BakeFolder() {
+        std::error_code ignored; // a folder that holds something stays
+        if (made_ && !kept_) std::filesystem::remove(path_, ignored);
+    }
+    BakeFolder(const BakeFolder&) = delete;
+    BakeFolder& operator=(const BakeFolder&) = delete;
+
+    std::string file(const std::string& name) const { return (path_ / name).string(); }
+    void keep() { kept_ = true; }
+
+private:
+    std::filesystem::path path_;
+    bool made_ = false;
+    bool kept_ = false;
+};
+
+/// What is in the folder, for the program that loads it.
+std::string manifest(const BakeOptions& options, const nlohmann::ordered_json& maps,
+                     std::size_t lights) {
+    nlohmann::ordered_json json;
+    json["source"] = options.probe.input;
+    json["axes"] = "right-handed, +Y up; faces +X -X +Y -Y +Z -Z as OpenGL samples them";
+    json["radiance"] = "scene-linear; diffuse is irradiance / pi";
+    json["diffuse"] = {{"files", "diffuse_{px,nx,py,ny,pz,nz}.exr"}, {"size", maps[0]["size"]}};
+    auto& levels = json["specular"] = nlohmann::ordered_json::array();
+    for (std::size_t k = 1; k < maps.size(); ++k) {
+        levels.push_back(
+            {{"files", "specular_m" + std::to_string(k - 1) + "_{px,nx,py,ny,pz,nz}.exr"},
+             {"size", maps[k]["size"]},
+             {"kernel", maps[k]["kernel"]},
+             {"roughness", maps[k]["roughness"]}});
+    }
+    json["lights"] = {{"file", "lights.json"}, {"count", lights}};
+    return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+void runBake(const BakeOptions& options) {
+    Session session("bake", options.common);
+    const int levels = options.levels.value_or(maxLevels(options.size));
+    if (levels > maxLevels(options.size)) {
+        throw Error(ExitCode::usage, "--levels " + std::to_string(levels) + ": a chain of size " +
+                                         std::to_string(options.size) + " has at most " +
+                                         std::to_string(maxLevels(options.size)) + " levels");
+    }
+    const Image latlong = latlongOf(session.readProbe(options.probe), session.threads());
+
+    // Irradiance holds nothing finer than a 64-texel face resolves.
+    std::vector<PrefilterRequest> requests{
+        {{Kernel::lambert, 0}, Layout::faces, std::min(options.size, 64)}};
+    for (const PrefilterRequest& level :
+         chainRequests(Kernel::ggx, levels, Layout::faces, options.size)) {
+        requests.push_back(level);
+    }
+    const auto results = runPrefilter(session, latlong, requests, options.quality);
+    const std::vector<Light> lights =
+        session.stage("cut", [&] { return medianCut(latlong, options.lights, session.threads()); });
+
+    BakeFolder folder(options.folder);
+    WriteOptions how;
+    how.type = options.type;
+    how.threads = session.threads();
+    session.stage("write", [&] {
+        session.write(folder.file("diffuse.exr"), results[0].map, how);
+        for (std::size_t k = 1; k < results.size(); ++k) {
+            session.write(levelName(folder.file("specular.exr"), static_cast<int>(k) - 1),
+                          results[k].map, how);
+        }
+        session.writeText(folder.file("lights.json"),
+                          lightsJson(lights, options.probe.input, "median"));
+        session.writeText(folder.file("bake.json"),
+                          manifest(options, session.results()["maps"], lights.size()));
+    });
+    session.finish();
+    folder.keep();
+}
+
+} // namespace
+
+Command bindBake(CLI::App& root) {
+    CLI::App* app = root.add_subcommand(
+        "bake", "All that an engine needs: diffuse map, GGX chain and lights, with one analysis");
+    auto options = std::make_shared<BakeOptions>();
+    bindProbe(*app, options->probe);
+    app->add_option("-o,--output", options->folder, "Folder to write into; made if it is not there")
+        ->required()
+        ->type_name("DIR")
+        ->group("Output");
+    app->add_option("--size", options->size, "Face edge of the chain's first level")
+        ->check(CLI::Range(1, kMaxSize))
+        ->type_name("N")
+        ->capture_default_str()
+        ->group("Output");
+    app->add_option("--levels", options->levels,
+                    "Levels of the chain, roughness 0 to 1 (default: down to a face of 1 texel)")
+        ->check(CLI::Range(1, 16))
+        ->type_name("K")
+        ->group("Output");
+    app->add_option("--lights", options->lights, "How many median-cut lights, 1 to 65536")
+        ->check(CLI::Range(1, 65536))
+        ->type_name("N")
+        ->capture_default_str()
+        ->group("Output");
+    bindType(*app, options->type);
+    bindQuality(*app, options->quality);
+    bindCommon(*app, options->common);
+    return {app, [options] { runBake(*options); }};
+}
+
+} // namespace ibl

@@ -1,0 +1,54 @@
+#include "cli/arguments.h"
+#include "cli/commands.h"
+#include "cli/session.h"
+
+#include "panorama/resample.h"
+
+#include <memory>
+
+namespace ibl {
+namespace {
+
+struct ConvertOptions {
+    CommonOptions common;
+    ProbeOptions probe;
+    ImageOutputOptions output;
+    Layout to = Layout::faces;
+    std::optional<int> size;
+};
+
+/// The size at which a layout holds about what the source holds: a lat-long's row is as high as a
+/// face's texel at a quarter turn for two faces' edges.
+int matchingSize(const Panorama& source, Layout to) {
+    const int size = *layoutSize(source.layout, source.image.width, source.image.height);
+    const auto isLatlong = [](Layout l) { return l == Layout::latlong || l == Layout::exrLatlong; };
+    if (isLatlong(source.layout) == isLatlong(to)) return size;
+    return isLatlong(to) ? 2 * size : std::max(1, size / 2);
+}
+
+void runConvert(const ConvertOptions& options) {
+    Session session("convert", options.common);
+    const Panorama source = session.readProbe(options.probe);
+    const int size = options.size.value_or(matchingSize(source, options.to));
+    const Panorama result = session.stage(
+        "resample", [&] { return resample(source, options.to, size, session.threads()); });
+    session.stage("write", [&] {
+        session.write(options.output.output, result, writeOptions(options.output, options.common));
+    });
+    session.results() = {{"layout", layoutName(options.to)}, {"size", size}};
+    session.finish();
+}
+
+} // namespace
+
+Command bindConvert(CLI::App& root) {
+    CLI::App* app = root.add_subcommand("convert", "Convert a probe between layouts and formats");
+    auto options = std::make_shared<ConvertOptions>();
+    bindProbe(*app, options->probe);
+    bindImageOutput(*app, options->output);
+    bindTarget(*app, options->to, options->size, "what keeps the probe's resolution");
+    bindCommon(*app, options->common);
+    return {app, [options] { runConvert(*options); }};
+}
+
+} // namespace ibl

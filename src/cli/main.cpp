@@ -1,0 +1,76 @@
+#include "cli/commands.h"
+
+#include "core/error.h"
+
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <iostream>
+#include <new>
+#include <string>
+#include <vector>
+
+namespace ibl {
+namespace {
+
+constexpr const char* kFooter =
+    "IN is a file, - for standard input, builtin:sky, builtin:compass or builtin:furnace.\n"
+    "Exit status: 0 done, 1 usage, 2 input, 3 something is not on this machine, 4 output,\n"
+    "5 the asked error cannot be met. See ibltool(1).";
+
+/// CLI11's message on one line, with the command whose help explains it.
+std::string usageMessage(const CLI::App& root, const CLI::ParseError& error) {
+    std::string command = "ibltool";
+    for (const CLI::App* app : root.get_subcommands())
+        command += " " + app->get_name();
+    std::string message = error.what();
+    while (!message.empty() && (message.back() == '\n' || message.back() == '.'))
+        message.pop_back();
+    return message + "; see " + command + " --help";
+}
+
+void runCommandLine(int argc, char** argv) {
+    CLI::App root("Image-based lighting: converts, convolves and renders with HDR probes.",
+                  "ibltool");
+    root.set_version_flag("--version", "ibltool " IBLTOOL_VERSION);
+    root.require_subcommand(1);
+    root.footer(kFooter);
+    const std::vector<Command> commands = {
+        bindConvert(root), bindDiffuse(root), bindSpecular(root), bindLights(root),
+        bindRender(root),  bindBake(root),    bindInfo(root),
+    };
+    try {
+        root.parse(argc, argv);
+    } catch (const CLI::Success& answer) { // --help, --version
+        root.exit(answer);
+        return;
+    } catch (const CLI::ParseError& error) {
+        throw Error(ExitCode::usage, usageMessage(root, error));
+    }
+    for (const Command& command : commands) {
+        if (command.app->parsed()) command.run();
+    }
+}
+
+} // namespace
+} // namespace ibl
+
+int main(int argc, char** argv) {
+    // A reader that has gone away is an output that cannot be written, not a reason to vanish.
+    std::signal(SIGPIPE, SIG_IGN);
+    try {
+        ibl::runCommandLine(argc, argv);
+        std::cout.flush();
+        if (!std::cout) throw ibl::outputError("-", "standard output cannot be written");
+        return 0;
+    } catch (const ibl::Error& error) {
+        std::fprintf(stderr, "ibltool: %s\n", error.what());
+        return static_cast<int>(error.code());
+    } catch (const std::bad_alloc&) {
+        std::fprintf(stderr, "ibltool: not enough memory; ask for a smaller size\n");
+        return static_cast<int>(ibl::ExitCode::missing);
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "ibltool: internal error: %s\n", error.what());
+        return static_cast<int>(ibl::ExitCode::missing);
+    }
+}

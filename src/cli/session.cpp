@@ -1,0 +1,201 @@
+#include "cli/session.h"
+
+#include "core/error.h"
+#include "panorama/builtin.h"
+#include "panorama/census.h"
+#include "panorama/resample.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cstdio>
+
+namespace ibl {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string place(const V2i& pixel) {
+    return "(" + std::to_string(pixel.x) + ", " + std::to_string(pixel.y) + ")";
+}
+
+std::string counted(long count, const char* what) {
+    return std::to_string(count) + " " + what + (count == 1 ? " pixel" : " pixels");
+}
+
+/// A file name as a makefile's rule takes it.
+std::string makeEscaped(const std::string& name) {
+    std::string escaped;
+    for (const char c : name) {
+        if (c == ' ' || c == '#' || c == '\\' || c == ':') escaped += '\\';
+        if (c == '$') escaped += '$';
+        escaped += c;
+    }
+    return escaped;
+}
+
+std::string shortNumber(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.6g", value);
+    return text;
+}
+
+} // namespace
+
+Session::StageTimer::StageTimer(Session& session, const char* name)
+    : session_(session), name_(name), begin_(std::chrono::steady_clock::now()) {}
+
+Session::StageTimer::~StageTimer() {
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin_;
+    session_.stages_.emplace_back(name_, taken.count());
+    char text[96];
+    std::snprintf(text, sizeof text, "%s: %.1f ms", name_, 1e3 * taken.count());
+    session_.detail(text);
+}
+
+Session::Session(std::string command, const CommonOptions& common)
+    : command_(std::move(command)), common_(common), results_(std::make_unique<Json>()) {
+    for (const std::string* file : {&common_.report, &common_.depfile}) {
+        if (*file == "-") {
+            throw Error(ExitCode::usage,
+                        "--report and --depfile do not go to standard output; name a file");
+        }
+    }
+}
+
+Session::~Session() = default;
+
+void Session::note(std::string_view subject, std::string_view text) {
+    const std::string line =
+        Error(ExitCode::done, std::string(subject) + ": " + std::string(text)).what();
+    if (!common_.quiet) std::fprintf(stderr, "ibltool: %s\n", line.c_str());
+    notes_.push_back(line);
+}
+
+void Session::detail(std::string_view text) const {
+    if (common_.verbose) std::fprintf(stderr, "%.*s\n", static_cast<int>(text.size()), text.data());
+}
+
+void Session::addInput(const std::string& path) {
+    input_names_.push_back(path);
+}
+
+ProbeFile Session::readUnscreened(const ProbeOptions& options) {
+    ReadProbeOptions how;
+    how.from = options.from;
+    how.layer = options.layer;
+    how.threads = threads();
+    ProbeFile file = stage("read", [&] { return ibl::readProbe(options.input, how); });
+    for (const std::string& name : file.files)
+        addInput(name);
+    for (const std::string& text : file.notes)
+        note(options.input, text);
+    return file;
+}
+
+Panorama Session::readProbe(const ProbeOptions& options) {
+    ProbeFile file = readUnscreened(options);
+    if (options.repair) {
+        mend(options.input, file.panorama);
+    } else {
+        stage("screen", [&] { screen(options.input, file.panorama); });
+    }
+    return std::move(file.panorama);
+}
+
+void Session::screen(const std::string& subject, const Panorama& panorama) {
+    const Census census = takeCensus(panorama, threads());
+    if (census.nan.count + census.infinite.count > 0) {
+        const BadPixels& first = census.nan.count > 0 ? census.nan : census.infinite;
+        throw inputError(subject, counted(census.nan.count, "NaN") + " and " +
+                                      counted(census.infinite.count, "infinite") +
+                                      ", the first at " + place(first.first) +
+                                      "; --repair mends them");
+    }
+    if (census.negative.count > 0) {
+        note(subject, counted(census.negative.count, "negative") + " kept, down to " +
+                          shortNumber(census.negative.extreme) + " at " +
+                          place(census.negative.extreme_at) + "; --repair sets them to 0");
+    }
+}
+
+void Session::mend(const std::string& subject, Panorama& panorama) {
+    const Census census = takeCensus(panorama, threads());
+    if (census.nan.count + census.infinite.count + census.negative.count == 0) return;
+    const long mended = stage("repair", [&] { return repair(subject, panorama); });
+    note(subject, counted(mended, "bad") + " mended (" + std::to_string(census.nan.count) +
+                      " NaN, " + std::to_string(census.infinite.count) + " infinite, " +
+                      std::to_string(census.negative.count) + " negative)");
+}
+
+void Session::reportLosses(const WriteLosses& losses, const std::string& path,
+                           const WriteOptions& options) {
+    for (const std::string& text : describeLosses(losses, path, options))
+        note(path, text);
+}
+
+void Session::write(const std::string& path, const Panorama& panorama,
+                    const WriteOptions& options) {
+    if (path == "-" && panorama.layout == Layout::faces) {
+        throw Error(ExitCode::usage,
+                    "-: faces are six files and do not fit standard output; choose "
+                    "another layout with --to");
+    }
+    reportLosses(writeProbe(outputs_, path, panorama, options), path, options);
+    for (const std::string& name : probeFileNames(path, panorama.layout))
+        addOutput(name);
+}
+
+void Session::write(const std::string& path, const Image& image, const WriteOptions& options) {
+    reportLosses(writeImage(outputs_, path, image, options), path, options);
+    addOutput(path);
+}
+
+void Session::writeText(const std::string& path, std::string_view text) {
+    outputs_.add(path).write(text);
+    addOutput(path);
+}
+
+Json& Session::results() {
+    return *results_;
+}
+
+std::string Session::reportText() const {
+    Json root;
+    root["command"] = command_;
+    root["inputs"] = input_names_;
+    root["outputs"] = output_names_;
+    root["notes"] = notes_;
+    Json& seconds = root["seconds"] = Json::object();
+    for (const auto& [name, taken] : stages_) {
+        seconds[name] = seconds.value(name, 0.0) + taken;
+    }
+    root["results"] = *results_;
+    return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string Session::depfileText() const {
+    std::string text;
+    for (const std::string& name : output_names_) {
+        if (name != "-") text += (text.empty() ? "" : " ") + makeEscaped(name);
+    }
+    text += ":";
+    for (const std::string& name : input_names_) {
+        if (name != "-") text += " " + makeEscaped(name);
+    }
+    return text + "\n";
+}
+
+void Session::finish() {
+    if (!common_.report.empty()) outputs_.add(common_.report).write(reportText());
+    if (!common_.depfile.empty()) outputs_.add(common_.depfile).write(depfileText());
+    outputs_.commit();
+}
+
+Image latlongOf(Panorama&& probe, int threads) {
+    if (probe.layout == Layout::latlong) return std::move(probe.image);
+    const int size = *layoutSize(probe.layout, probe.image.width, probe.image.height);
+    const int height = probe.layout == Layout::exrLatlong ? size : 2 * size;
+    return resample(probe, Layout::latlong, height, threads).image;
+}
+
+} // namespace ibl

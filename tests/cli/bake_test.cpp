@@ -1,0 +1,59 @@
+#include "cli/tool.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace ibl {
+namespace {
+
+TEST(Bake, WritesWhatItsManifestNames) {
+    const Scratch scratch;
+    const ToolResult result = runTool(
+        {"bake", "builtin:sky", "-o", "b", "--size", "8", "--lights", "5", "--depfile", "b.d"},
+        scratch.path());
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const auto manifest = nlohmann::json::parse(readFile(scratch / "b/bake.json"));
+    EXPECT_EQ(manifest.at("specular").size(), 4u); // 8, 4, 2, 1
+    EXPECT_EQ(manifest.at("specular")[3].at("roughness"), 1.0);
+    EXPECT_EQ(manifest.at("diffuse").at("size"), 8);
+    EXPECT_EQ(nlohmann::json::parse(readFile(scratch / "b/lights.json")).at("lights").size(), 5u);
+    // Folder, six diffuse faces, four levels of six, lights, manifest, depfile.
+    EXPECT_EQ(scratch.names().size(), 1u + 6 + 24 + 2 + 1);
+}
+
+TEST(Bake, IsTheOtherCommandsResults) {
+    const Scratch scratch;
+    ASSERT_EQ(
+        runTool({"bake", "builtin:sky", "-o", "b", "--size", "16", "--levels", "3"}, scratch.path())
+            .exit_code,
+        0);
+    ASSERT_EQ(runTool({"diffuse", "builtin:sky", "-o", "d.exr", "--size", "16"}, scratch.path())
+                  .exit_code,
+              0);
+    ASSERT_EQ(runTool({"specular", "builtin:sky", "-o", "s.exr", "--size", "16", "--levels", "3"},
+                      scratch.path())
+                  .exit_code,
+              0);
+    ASSERT_EQ(runTool({"lights", "builtin:sky", "-o", "l.json"}, scratch.path()).exit_code, 0);
+    EXPECT_EQ(readFile(scratch / "b/lights.json"), readFile(scratch / "l.json"));
+    EXPECT_EQ(readFile(scratch / "b/specular_m0_py.exr"), readFile(scratch / "s_m0_py.exr"));
+    EXPECT_EQ(readFile(scratch / "b/diffuse_py.exr").size(), readFile(scratch / "d_py.exr").size());
+}
+
+TEST(Bake, AnExistingFolderIsUsedAndAFailedRunLeavesNone) {
+    const Scratch scratch;
+    std::filesystem::create_directory(scratch / "b");
+    writeFile(scratch / "b/kept.txt", "mine");
+    EXPECT_EQ(
+        runTool({"bake", "builtin:furnace", "-o", "b", "--size", "2"}, scratch.path()).exit_code,
+        0);
+    EXPECT_EQ(readFile(scratch / "b/kept.txt"), "mine");
+    expectRefused(
+        runTool({"bake", "builtin:furnace", "-o", "c", "--size", "2", "--report", "no/r.json"},
+                scratch.path()),
+        4, "no/r.json");
+    EXPECT_FALSE(std::filesystem::exists(scratch / "c"));
+}
+
+} // namespace
+} // namespace ibl

@@ -1,0 +1,127 @@
+#include "cli/tool.h"
+
+#include "image/read.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace ibl {
+namespace {
+
+using Words = std::vector<std::string>;
+
+void expectConstant(const std::filesystem::path& file, float value, float tolerance) {
+    const Image image = readImage(file.string()).image;
+    for (const float v : image.pixels)
+        ASSERT_NEAR(v, value, tolerance) << file;
+}
+
+TEST(Diffuse, FurnaceIsItselfInEveryLayout) {
+    const Scratch scratch;
+    for (const char* layout : {"latlong", "strip", "vstrip"}) {
+        const ToolResult result =
+            runTool({"diffuse", "builtin:furnace", "--to", layout, "--size", "8", "-o", "f.exr"},
+                    scratch.path());
+        ASSERT_EQ(result.exit_code, 0) << result.err;
+        expectConstant(scratch / "f.exr", 1, 1e-6f);
+    }
+}
+
+TEST(Specular, FurnaceIsItselfForEveryLobe) {
+    const Scratch scratch;
+    const auto furnace = [&](const Words& lobe) {
+        Words words{"specular", "builtin:furnace", "--to", "vstrip", "--size", "8", "-o", "f.exr"};
+        words.insert(words.end(), lobe.begin(), lobe.end());
+        const ToolResult result = runTool(words, scratch.path());
+        ASSERT_EQ(result.exit_code, 0) << result.err;
+        expectConstant(scratch / "f.exr", 1, 1e-6f);
+    };
+    for (const char* roughness : {"0", "0.1", "0.5", "1"})
+        furnace({"--roughness", roughness});
+    for (const char* exponent : {"0", "1", "100", "1e5"}) {
+        furnace({"--kernel", "phong", "--exponent", exponent});
+    }
+}
+
+TEST(Specular, RoughnessZeroIsConvert) {
+    const Scratch scratch;
+    ASSERT_EQ(
+        runTool({"specular", "builtin:sky", "--roughness", "0", "--size", "32", "-o", "s.exr"},
+                scratch.path())
+            .exit_code,
+        0);
+    ASSERT_EQ(runTool({"convert", "builtin:sky", "--size", "32", "-o", "c.exr"}, scratch.path())
+                  .exit_code,
+              0);
+    for (const char* face : {"px", "nx", "py", "ny", "pz", "nz"}) {
+        EXPECT_EQ(readFile(scratch / ("s_" + std::string(face) + ".exr")),
+                  readFile(scratch / ("c_" + std::string(face) + ".exr")));
+    }
+}
+
+TEST(Specular, ChainHasTheLevelsAskedAndTheirLobes) {
+    const Scratch scratch;
+    const ToolResult result = runTool({"specular", "builtin:sky", "--levels", "5", "--size", "16",
+                                       "--to", "vcross", "-o", "s.exr", "--report", "r.json"},
+                                      scratch.path());
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(scratch.names(),
+              (Words{"r.json", "s_m0.exr", "s_m1.exr", "s_m2.exr", "s_m3.exr", "s_m4.exr"}));
+    const auto maps = nlohmann::json::parse(readFile(scratch / "r.json")).at("results").at("maps");
+    for (int k = 0; k < 5; ++k) {
+        EXPECT_EQ(maps[k].at("roughness"), k / 4.0);
+        EXPECT_EQ(maps[k].at("size"), 16 >> k);
+        EXPECT_EQ(readImage((scratch / ("s_m" + std::to_string(k) + ".exr")).string()).image.width,
+                  3 * (16 >> k));
+    }
+    // A level of the chain is the lobe alone.
+    ASSERT_EQ(runTool({"specular", "builtin:sky", "--roughness", "0.5", "--size", "4", "--to",
+                       "vcross", "-o", "one.exr"},
+                      scratch.path())
+                  .exit_code,
+              0);
+    const Image one = readImage((scratch / "one.exr").string()).image;
+    const Image level = readImage((scratch / "s_m2.exr").string()).image;
+    for (std::size_t i = 0; i < one.pixels.size(); ++i) {
+        EXPECT_NEAR(one.pixels[i], level.pixels[i], 1e-3f * (1 + level.pixels[i]));
+    }
+}
+
+TEST(Specular, Refusals) {
+    const Scratch scratch;
+    const auto refused = [&](Words words, const std::string& said) {
+        words.insert(words.begin(), {"specular", "builtin:sky", "-o", "s.exr"});
+        expectRefused(runTool(words, scratch.path()), 1, said);
+    };
+    refused({}, "--roughness");
+    refused({"--roughness", "-0.1"}, "--roughness");
+    refused({"--roughness", "1.5"}, "--roughness");
+    refused({"--roughness", "nan"}, "--roughness");
+    refused({"--kernel", "phong", "--roughness", "0.5"}, "--exponent");
+    refused({"--exponent", "5"}, "--roughness");
+    refused({"--kernel", "phong", "--exponent", "-1"}, "--exponent");
+    refused({"--kernel", "phong", "--exponent", "1e7"}, "--exponent");
+    refused({"--kernel", "cook", "--roughness", "0.5"}, "--kernel");
+    refused({"--levels", "10", "--size", "256"}, "--levels");
+    refused({"--levels", "3", "--roughness", "0.5"}, "--levels");
+    refused({"--roughness", "0.5", "--max-error", "0"}, "--max-error");
+    refused({"--roughness", "0.5", "--quality", "best"}, "--quality");
+    refused({"--roughness", "0.5", "--quality", "high", "--max-error", "1e-3"}, "--quality");
+    EXPECT_TRUE(scratch.names().empty());
+}
+
+TEST(Diffuse, MaxErrorIsKeptOrRefused) {
+    const Scratch scratch;
+    const ToolResult result = runTool({"diffuse", "builtin:sky", "--size", "8", "--max-error",
+                                       "1e-5", "-o", "d.exr", "--report", "r.json"},
+                                      scratch.path());
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const auto map =
+        nlohmann::json::parse(readFile(scratch / "r.json")).at("results").at("maps")[0];
+    EXPECT_LE(map.at("error_estimate").get<double>(), 1e-5);
+}
+
+} // namespace
+} // namespace ibl

@@ -1,0 +1,195 @@
+#include "cli/tool.h"
+
+#include "image/read.h"
+#include "panorama/builtin.h"
+#include "panorama/lookup.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+namespace ibl {
+namespace {
+
+using Words = std::vector<std::string>;
+
+Image render(const Scratch& scratch, Words words, const std::string& out = "o.exr") {
+    words.insert(words.begin(), "render");
+    words.insert(words.end(), {"-o", out});
+    const ToolResult result = runTool(words, scratch.path());
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    ReadOptions options;
+    options.keep_alpha = true;
+    return readImage((scratch / out).string(), options).image;
+}
+
+V3d pixel(const Image& image, int x, int y) {
+    const float* rgb = image.at(x, y);
+    return {rgb[0], rgb[1], rgb[2]};
+}
+
+TEST(Render, MirrorAndBackgroundAreTheProbeLookedUp) {
+    const Scratch scratch;
+    const Panorama sky = builtinProbe("builtin:sky");
+    const int size = 64;
+    const double fov = 40, distance = 4;
+    const Image frame = render(scratch, {"--probe", "builtin:sky", "--azimuth", "30", "--elevation",
+                                         "20", "--size", "64x64", "--samples", "1"});
+    // The camera and the sphere in plain vector algebra.
+    const double az = 30 * kPi / 180, el = 20 * kPi / 180;
+    const V3d back(std::cos(el) * std::sin(az), std::sin(el), std::cos(el) * std::cos(az));
+    const V3d eye = back * distance;
+    const V3d right = V3d(0, 1, 0).cross(back).normalized();
+    const V3d up = back.cross(right);
+    const double half = std::tan(0.5 * fov * kPi / 180);
+    double error = 0, reference = 0;
+    int mirrored = 0;
+    for (int y = 0; y < size; ++y) {
+        for (int x = 0; x < size; ++x) {
+            V3d ray = -back + right * (half * (2 * (x + 0.5) / size - 1)) -
+                      up * (half * (2 * (y + 0.5) / size - 1));
+            ray.normalize();
+            const double b = eye.dot(ray), disc = b * b - (eye.length2() - 1);
+            if (std::abs(disc) < 0.4) continue; // near the silhouette a pixel sees half the probe
+            if (disc > 0) {
+                const V3d normal = eye + ray * (-b - std::sqrt(disc));
+                ray -= normal * (2 * ray.dot(normal));
+                ++mirrored;
+            }
+            // The sun's own pixels are compared by the finer unit tests.
+            const V3d expected = radianceAt(sky, ray);
+            if (expected.y > 20) continue;
+            error += (pixel(frame, x, y) - expected).length2();
+            reference += expected.length2();
+        }
+    }
+    EXPECT_GT(mirrored, 300);
+    EXPECT_LT(std::sqrt(error / reference), 0.01);
+}
+
+TEST(Render, FurnaceIsOneForEveryShaderAndObject) {
+    const Scratch scratch;
+    for (const char* object : {"sphere", "cube", "torus", "teapot", "dodecahedron"}) {
+        for (const char* shader : {"mirror", "diffuse", "mirror-diffuse"}) {
+            const Image frame =
+                render(scratch, {"--probe", "builtin:furnace", "--object", object, "--shader",
+                                 shader, "--size", "24x24", "--samples", "4"});
+            for (const float v : frame.pixels) {
+                ASSERT_NEAR(v, 1, 1e-5) << object << " " << shader;
+            }
+        }
+    }
+}
+
+TEST(Render, PngIsTheSrgbOfTheLinearFrame) {
+    const Scratch scratch;
+    const Words words{"--probe", "builtin:sky", "--size", "40x30",     "--samples",
+                      "4",       "--exposure",  "-1",     "--tonemap", "scurve"};
+    const Image linear = render(scratch, words);
+    const Image png = render(scratch, words, "o.png");
+    ASSERT_EQ(png.width, 40);
+    ASSERT_EQ(png.height, 30);
+    const auto encode = [](double v) {
+        v = std::min(std::max(v, 0.0), 1.0);
+        return v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
+    };
+    for (std::size_t i = 0; i < png.pixels.size(); ++i) {
+        ASSERT_NEAR(255 * encode(png.pixels[i]), 255 * encode(linear.pixels[i]), 0.51);
+    }
+}
+
+TEST(Render, NoBackgroundHasAlpha) {
+    const Scratch scratch;
+    const Image frame = render(scratch, {"--probe", "builtin:furnace", "--background", "none",
+                                         "--size", "32x32", "--samples", "16"});
+    ASSERT_EQ(frame.channels, 4);
+    EXPECT_EQ(frame.at(0, 0)[3], 0.f);
+    EXPECT_EQ(frame.at(0, 0)[0], 0.f);
+    EXPECT_EQ(frame.at(16, 16)[3], 1.f);
+    bool edge = false;
+    for (int i = 0; i < 32 * 32; ++i) {
+        const float* p = &frame.pixels[static_cast<std::size_t>(i) * 4];
+        EXPECT_NEAR(p[0], p[3], 1e-5); // premultiplied white
+        edge = edge || (p[3] > 0.1f && p[3] < 0.9f);
+    }
+    EXPECT_TRUE(edge);
+}
+
+TEST(Render, BackgroundColourAndImage) {
+    const Scratch scratch;
+    const Image colour = render(
+        scratch, {"--probe", "builtin:furnace", "--background", "0.25,0.5,2", "--size", "16x16"});
+    EXPECT_EQ(pixel(colour, 0, 0), V3d(0.25, 0.5, 2));
+    const Image plate =
+        render(scratch, {"--probe", "builtin:furnace", "--background", "o.exr", "--size", "16x16"},
+               "p.exr");
+    EXPECT_EQ(pixel(plate, 0, 0), V3d(0.25, 0.5, 2));
+    expectRefused(runTool({"render", "--probe", "builtin:furnace", "--background", "o.exr",
+                           "--size", "17x16", "-o", "q.exr"},
+                          scratch.path()),
+                  1, "16");
+}
+
+TEST(Render, ObjFilesAreDrawn) {
+    const Scratch scratch;
+    writeFile(scratch / "t.obj", "v -1 -1 0\nv 1 -1 0\nv 0 1 0\nf 1 2 3\n");
+    const Image frame =
+        render(scratch, {"--probe", "builtin:furnace", "--object", "t.obj", "--background", "0,0,0",
+                         "--size", "32x32", "--depfile", "o.d"});
+    EXPECT_NEAR(frame.at(16, 16)[0], 1, 1e-5);
+    EXPECT_EQ(frame.at(1, 1)[0], 0.f);
+    EXPECT_EQ(readFile(scratch / "o.d"), "o.exr: t.obj\n");
+}
+
+TEST(Render, Refusals) {
+    const Scratch scratch;
+    const auto refused = [&](Words words, int code, const std::string& said) {
+        words.insert(words.begin(), {"render", "--probe", "builtin:furnace", "-o", "o.png"});
+        expectRefused(runTool(words, scratch.path()), code, said);
+    };
+    refused({"--size", "64"}, 1, "--size");
+    refused({"--size", "0x64"}, 1, "--size");
+    refused({"--size", "64x64x64"}, 1, "--size");
+    refused({"--size", "64x-1"}, 1, "--size");
+    refused({"--size", "100000x8"}, 1, "100000");
+    refused({"--samples", "0"}, 1, "--samples");
+    refused({"--object", "pyramid"}, 1, "pyramid");
+    refused({"--object", "missing.obj"}, 2, "missing.obj");
+    refused({"--shader", "wood"}, 1, "--shader");
+    refused({"--tonemap", "magic"}, 1, "--tonemap");
+    refused({"--fov", "0"}, 1, "field of view");
+    refused({"--fov", "180"}, 1, "field of view");
+    refused({"--fov", "nan"}, 1, "");
+    refused({"--eye", "0,0,0"}, 1, "");
+    refused({"--eye", "0,4,0"}, 1, "up");
+    refused({"--eye", "1,2"}, 1, "--eye");
+    refused({"--eye", "0,0,4", "--azimuth", "3"}, 1, "--azimuth");
+    refused({"--up", "0,0,1"}, 1, "--eye");
+    refused({"--background", "missing.png"}, 2, "missing.png");
+    refused({"--reflectivity", "1.5"}, 1, "--reflectivity");
+    writeFile(scratch / "bad.obj", "v 1 2 three\nf 1 2 9\n");
+    refused({"--object", "bad.obj"}, 2, "bad.obj");
+    EXPECT_EQ(scratch.names(), (Words{"bad.obj"}));
+}
+
+TEST(Render, NoDeviceIsExitThreeAndNamesThePackages) {
+    const Scratch scratch;
+    // No vendor's driver is found in an empty folder.
+    expectRefused(runTool({"render", "--probe", "builtin:furnace", "-o", "o.png"}, scratch.path(),
+                          {}, {"__EGL_VENDOR_LIBRARY_DIRS=" + scratch.path().string()}),
+                  3, "libgl1-mesa-dri");
+    EXPECT_TRUE(scratch.names().empty());
+}
+
+TEST(Render, NeedsNoDisplay) {
+    const Scratch scratch;
+    const ToolResult result = runTool(
+        {"render", "--probe", "builtin:furnace", "-o", "o.png", "--size", "8x8", "--verbose"},
+        scratch.path(), {}, {"DISPLAY=", "WAYLAND_DISPLAY=", "XDG_RUNTIME_DIR="});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_NE(result.err.find("device: "), std::string::npos) << result.err;
+}
+
+} // namespace
+} // namespace ibl
