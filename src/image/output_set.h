@@ -17,11 +17,15 @@ public:
     OutputFile& operator=(const OutputFile&) = delete;
     ~OutputFile();
 
-    /// Appends bytes (at the place set by seek). Throws outputError, on a full disk for example.
+    /// Writes bytes at position(), which moves on. Small writes are gathered. Throws outputError,
+    /// on a full disk for example, at once or at the next flush.
     void write(const void* data, std::size_t size);
     void write(std::string_view text) { write(text.data(), text.size()); }
-    void seek(std::uint64_t position) { position_ = position; }
-    std::uint64_t position() const { return position_; }
+    void seek(std::uint64_t position);
+    std::uint64_t position() const { return position_ + pending_.size(); }
+    /// Hands gathered bytes to the system. Throws if any write has failed, even one whose exception
+    /// went astray (OpenEXR's destructors swallow them).
+    void flush();
 
     /// The name the user gave, for messages.
     const std::string& path() const { return path_; }
@@ -31,6 +35,11 @@ public:
 private:
     friend class OutputSet;
     OutputFile() = default;
+    void openBeside(std::size_t number);
+    void giveHiddenName(std::size_t number);
+    void giveName();
+    void sendToStream();
+    void close();
 
     std::string path_;   ///< as given
     std::string folder_; ///< of the file that is replaced, links resolved; "" for a stream
@@ -38,7 +47,9 @@ private:
     std::string hidden_; ///< name in that folder before the rename; "" while the file is unnamed
     int file_ = -1;      ///< what is being written
     int stream_ = -1;    ///< where it goes at commit if the target is a pipe, device or descriptor
-    std::uint64_t position_ = 0;
+    int error_ = 0;      ///< errno of the first write that failed
+    std::uint64_t position_ = 0; ///< in the file, of the first pending byte
+    std::vector<char> pending_;
 };
 
 /// The files that one run writes. Each is written unnamed (or under a hidden name, where the file
@@ -56,8 +67,9 @@ public:
     ~OutputSet() = default;
 
     /// Opens a new file that shall become `path`. The reference lives as long as the set. Throws
-    /// outputError if `path` is a folder, lies in none, may not be written, or is in the set already.
-    /// Not to be called from several threads at once; writing to different files of a set may be.
+    /// outputError if `path` is a folder, lies in none, may not be written, or is in the set
+    /// already. Not to be called from several threads at once; writing to different files of a set
+    /// may be.
     OutputFile& add(const std::string& path);
 
     /// Gives all files their names, in the order in which they were added: add a report or a

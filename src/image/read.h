@@ -11,16 +11,17 @@
 namespace ibl {
 
 struct ReadOptions {
-    std::string layer;       ///< OpenEXR layer or part ("diffuse" reads diffuse.R .G .B); "" the main one
-    bool keep_alpha = false; ///< RGBA where the file has alpha; otherwise alpha is dropped, and noted
-    int threads = 0;         ///< for decoding; 0: as many as the machine has
+    std::string layer; ///< OpenEXR layer or part ("diffuse" reads diffuse.R .G .B); "" the main one
+    bool keep_alpha =
+        false;       ///< RGBA where the file has alpha; otherwise alpha is dropped, and noted
+    int threads = 0; ///< for decoding; 0: as many as the machine has
 };
 
 struct ImageFile {
     Image image;             ///< RGB, or RGBA (premultiplied) with keep_alpha and alpha in the file
     std::string format;      ///< "exr", "radiance", "png", or OpenImageIO's name of the format
     std::string compression; ///< "zip", "dwaa", "rle", ...; "" where it does not apply
-    std::string pixel_type;  ///< "half", "float", "uint", "rgbe", "xyze", "uint8", "uint16", ...
+    std::string pixel_type;  ///< "half", "float", "uint", "rgbe", "uint8", "uint16", ...
     std::string envmap;      ///< OpenEXR's envmap attribute: "latlong", "cube" or "" (none)
     /// Products of a Radiance file's EXPOSURE and COLORCORR lines. The pixels are divided by them
     /// already.

@@ -15,7 +15,8 @@ enum class PixelType { half, float32 };
 
 struct WriteOptions {
     PixelType type = PixelType::float32;
-    /// OpenEXR: "none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"; "" is zip
+    /// OpenEXR: "none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"; "" is
+    /// zip
     std::string compression;
     std::string envmap; ///< OpenEXR's envmap attribute: "", "latlong" or "cube"
     std::string format; ///< "exr", "hdr", "png", ... instead of what the name's extension says

@@ -1,0 +1,397 @@
+#include "image/exr.h"
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "image/exr_layers.h"
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfInputPart.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
+#include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfRgbaFile.h>
+#include <OpenEXR/ImfStandardAttributes.h>
+#include <OpenEXR/ImfStdIO.h>
+#include <OpenEXR/ImfTestFile.h>
+#include <OpenEXR/ImfThreading.h>
+#include <OpenEXR/ImfVersion.h>
+#include <OpenEXR/ImfXdr.h>
+
+#include <algorithm>
+#include <cstring>
+#include <memory>
+#include <optional>
+
+namespace ibl {
+namespace {
+
+using Imath::Box2i;
+
+/// OpenEXR's stream over bytes in memory.
+class MemoryStream : public Imf::IStream {
+public:
+    MemoryStream(const std::vector<std::uint8_t>& bytes, const std::string& name)
+        : IStream(name.c_str()), bytes_(bytes) {}
+    bool read(char out[], int count) override {
+        if (count < 0 || position_ > bytes_.size() ||
+            static_cast<std::size_t>(count) > bytes_.size() - position_) {
+            throw Iex::InputExc("unexpected end of file");
+        }
+        std::memcpy(out, bytes_.data() + position_, static_cast<std::size_t>(count));
+        position_ += static_cast<std::size_t>(count);
+        return position_ < bytes_.size();
+    }
+    std::uint64_t tellg() override { return position_; }
+    void seekg(std::uint64_t position) override { position_ = position; }
+
+private:
+    const std::vector<std::uint8_t>& bytes_;
+    std::size_t position_ = 0;
+};
+
+std::unique_ptr<Imf::IStream> openStream(const Source& source) {
+    if (source.whole) return std::make_unique<MemoryStream>(source.bytes, source.name);
+    return std::make_unique<Imf::StdIFStream>(source.path.c_str());
+}
+
+/// Width or height of a window from its corners, which may lie anywhere in the range of int.
+std::int64_t extent(int low, int high) {
+    return std::int64_t{high} - low + 1;
+}
+
+/// Refuses what OpenEXR would take memory for before it sees that the file cannot hold it: its
+/// tables go by the height of the data window, its buffers by the tile size.
+void checkHeader(const Imf::Header& header, const std::string& name) {
+    const Box2i data = header.dataWindow(), display = header.displayWindow();
+    const std::int64_t data_width = extent(data.min.x, data.max.x);
+    const std::int64_t data_height = extent(data.min.y, data.max.y);
+    const std::int64_t width = extent(display.min.x, display.max.x);
+    const std::int64_t height = extent(display.min.y, display.max.y);
+    checkSize(name, data_width, data_height);
+    checkSize(name, width, height);
+    // A few pixels in a vast black frame are a mistake or an attack.
+    if (width * height > std::max(std::int64_t{1} << 24, 64 * data_width * data_height)) {
+        throw inputError(name, "has a display window far larger than its pixels; crop it first");
+    }
+    if (header.hasTileDescription()) {
+        const Imf::TileDescription& tiles = header.tileDescription();
+        if (std::uint64_t{tiles.xSize} * tiles.ySize >
+            static_cast<std::uint64_t>(std::max(std::int64_t{1} << 22, data_width * data_height))) {
+            throw inputError(name, "has tiles larger than its image; the file is corrupt");
+        }
+    }
+}
+
+/// The headers of all parts (OpenEXR's file layout: magic number, version, headers; those of a
+/// multi-part file end with an empty one).
+std::vector<Imf::Header> readHeaders(Imf::IStream& stream, const std::string& name) {
+    int magic = 0, version = 0;
+    Imf::Xdr::read<Imf::StreamIO>(stream, magic);
+    Imf::Xdr::read<Imf::StreamIO>(stream, version);
+    std::vector<Imf::Header> headers;
+    while (true) {
+        if (!headers.empty()) {
+            if (!Imf::isMultiPart(version)) break;
+            const std::uint64_t position = stream.tellg();
+            char first = 0;
+            Imf::Xdr::read<Imf::StreamIO>(stream, first);
+            if (first == 0) break;
+            stream.seekg(position);
+        }
+        Imf::Header& header = headers.emplace_back();
+        header.readFrom(stream, version);
+        checkHeader(header, name);
+    }
+    return headers;
+}
+
+const char* compressionName(Imf::Compression compression) {
+    switch (compression) {
+    case Imf::NO_COMPRESSION:
+        return "none";
+    case Imf::RLE_COMPRESSION:
+        return "rle";
+    case Imf::ZIPS_COMPRESSION:
+        return "zips";
+    case Imf::ZIP_COMPRESSION:
+        return "zip";
+    case Imf::PIZ_COMPRESSION:
+        return "piz";
+    case Imf::PXR24_COMPRESSION:
+        return "pxr24";
+    case Imf::B44_COMPRESSION:
+        return "b44";
+    case Imf::B44A_COMPRESSION:
+        return "b44a";
+    case Imf::DWAA_COMPRESSION:
+        return "dwaa";
+    case Imf::DWAB_COMPRESSION:
+        return "dwab";
+    default:
+        return "unknown";
+    }
+}
+
+const char* typeName(Imf::PixelType type) {
+    return type == Imf::HALF ? "half" : type == Imf::FLOAT ? "float" : "uint";
+}
+
+std::string windowText(const Box2i& w) {
+    return "(" + std::to_string(w.min.x) + ", " + std::to_string(w.min.y) + ") to (" +
+           std::to_string(w.max.x) + ", " + std::to_string(w.max.y) + ")";
+}
+
+void noteChromaticities(const Imf::Header& header, std::vector<std::string>& notes) {
+    if (!Imf::hasChromaticities(header)) return;
+    const Imf::Chromaticities here = Imf::chromaticities(header), rec709;
+    const auto differ = [](const Imath::V2f& a, const Imath::V2f& b) {
+        return (a - b).length() > 0.002F;
+    };
+    if (differ(here.red, rec709.red) || differ(here.green, rec709.green) ||
+        differ(here.blue, rec709.blue) || differ(here.white, rec709.white)) {
+        notes.push_back("its chromaticities are not Rec. 709's; colours are read as they are");
+    }
+}
+
+struct Channels {
+    std::vector<std::string> names;
+    Imf::PixelType type = Imf::FLOAT;
+};
+
+Channels channelsOf(const Imf::Header& header, const ExrChoice& choice, bool alpha,
+                    const std::string& name) {
+    Channels channels;
+    if (choice.colour == ExrColour::rgb) {
+        for (const char* c : {"R", "G", "B"})
+            channels.names.push_back(choice.prefix + c);
+    } else {
+        channels.names.push_back(choice.prefix + "Y");
+    }
+    channels.type = header.channels().findChannel(channels.names[0])->type;
+    if (alpha) channels.names.push_back(choice.prefix + "A");
+    for (const std::string& c : channels.names) {
+        const Imf::Channel& channel = header.channels()[c];
+        if (channel.xSampling != 1 || channel.ySampling != 1) {
+            throw inputError(name, "its channel " + c + " is subsampled; resample it first");
+        }
+    }
+    return channels;
+}
+
+/// The display window's image and where the file's pixels go in it.
+struct Target {
+    Box2i display, data, shared; ///< shared: the part of both (perhaps empty)
+    Image image;
+
+    Target(const Imf::Header& header, int channels)
+        : display(header.displayWindow()),
+          data(header.dataWindow()),
+          shared({std::max(display.min.x, data.min.x), std::max(display.min.y, data.min.y)},
+                 {std::min(display.max.x, data.max.x), std::min(display.max.y, data.max.y)}),
+          image(static_cast<int>(extent(display.min.x, display.max.x)),
+                static_cast<int>(extent(display.min.y, display.max.y)), channels) {
+        if (shared != display) std::fill(image.pixels.begin(), image.pixels.end(), 0.0F);
+    }
+    float* at(int x, int y) { return image.at(x - display.min.x, y - display.min.y); }
+    std::size_t dataWidth() const { return static_cast<std::size_t>(data.max.x - data.min.x) + 1; }
+    bool empty() const { return shared.isEmpty(); }
+};
+
+/// Address of the pixel (0, 0) that OpenEXR's slices want, given that of (x, y). It need not lie in
+/// the buffer, so it is reckoned as a number.
+template <class T>
+char* sliceBase(T* pixel, int x, int y, std::size_t x_stride, std::size_t y_stride) {
+    const auto address = reinterpret_cast<std::uintptr_t>(pixel);
+    const auto offset = std::int64_t{x} * static_cast<std::int64_t>(x_stride) +
+                        std::int64_t{y} * static_cast<std::int64_t>(y_stride);
+    return reinterpret_cast<char*>(address - static_cast<std::uintptr_t>(offset));
+}
+
+void setFloats(Imf::InputPart& part, const Channels& channels, float* pixel, int x, int y,
+               std::size_t row_pixels, std::size_t pixel_floats) {
+    Imf::FrameBuffer buffer;
+    const std::size_t x_stride = pixel_floats * sizeof(float);
+    const std::size_t y_stride = row_pixels * x_stride;
+    for (std::size_t c = 0; c < channels.names.size(); ++c) {
+        // Luminance goes to the first channel, alpha always to the fourth.
+        const std::size_t place = channels.names[c].ends_with("A") ? 3 : c;
+        buffer.insert(channels.names[c],
+                      Imf::Slice(Imf::FLOAT, sliceBase(pixel + place, x, y, x_stride, y_stride),
+                                 x_stride, y_stride));
+    }
+    part.setFrameBuffer(buffer);
+}
+
+/// Calls `readRows(y_first, y_last)` for blocks of rows that fit a scratch of a few MB.
+template <class ReadRows>
+void forRowBlocks(const Target& target, std::size_t pixel_bytes, const ReadRows& readRows) {
+    constexpr std::size_t kScratchBytes = 32 << 20;
+    const std::size_t rows = kScratchBytes / (target.dataWidth() * pixel_bytes);
+    // A multiple of the chunk height, so that few chunks are decoded twice.
+    const int step = rows >= 256 ? 256 : rows >= 32 ? 32 : 16;
+    for (int y = target.shared.min.y; y <= target.shared.max.y;) {
+        const int last = std::min<std::int64_t>(target.shared.max.y, std::int64_t{y} + step - 1);
+        readRows(y, last);
+        if (last == target.shared.max.y) break;
+        y = last + 1;
+    }
+}
+
+void readChannels(Imf::MultiPartInputFile& file, const ExrChoice& choice, const Channels& channels,
+                  Target& target) {
+    if (target.empty()) return;
+    Imf::InputPart part(file, choice.part);
+    const std::size_t floats = static_cast<std::size_t>(target.image.channels);
+    if (target.shared == target.data) {
+        setFloats(part, channels, target.at(target.data.min.x, target.data.min.y),
+                  target.data.min.x, target.data.min.y,
+                  static_cast<std::size_t>(target.image.width), floats);
+        part.readPixels(target.data.min.y, target.data.max.y);
+        return;
+    }
+    const std::size_t row = target.dataWidth() * floats;
+    const std::size_t kept =
+        static_cast<std::size_t>(target.shared.max.x - target.shared.min.x + 1);
+    const std::size_t skipped = static_cast<std::size_t>(target.shared.min.x - target.data.min.x);
+    std::vector<float> scratch;
+    forRowBlocks(target, floats * sizeof(float), [&](int first, int last) {
+        scratch.assign(row * static_cast<std::size_t>(last - first + 1), 0.0F);
+        setFloats(part, channels, scratch.data(), target.data.min.x, first, target.dataWidth(),
+                  floats);
+        part.readPixels(first, last);
+        for (int y = first; y <= last; ++y) {
+            const float* from =
+                scratch.data() + row * static_cast<std::size_t>(y - first) + skipped * floats;
+            std::copy_n(from, kept * floats, target.at(target.shared.min.x, y));
+        }
+    });
+}
+
+/// Luminance and chroma by OpenEXR's own reconstruction, which works in half precision and undoes
+/// the file's chromaticities' luminance weights.
+void readLuminanceChroma(Imf::IStream& stream, const ExrChoice& choice, int threads,
+                         Target& target) {
+    stream.seekg(0);
+    const std::string layer =
+        choice.prefix.empty() ? "" : choice.prefix.substr(0, choice.prefix.size() - 1);
+    Imf::RgbaInputFile file(stream, layer, threads);
+    if (target.empty()) return;
+    std::vector<Imf::Rgba> scratch;
+    const std::size_t width = target.dataWidth();
+    forRowBlocks(target, sizeof(Imf::Rgba), [&](int first, int last) {
+        scratch.resize(width * static_cast<std::size_t>(last - first + 1));
+        const std::size_t y_stride = width * sizeof(Imf::Rgba);
+        file.setFrameBuffer(
+            reinterpret_cast<Imf::Rgba*>(
+                sliceBase(scratch.data(), target.data.min.x, first, sizeof(Imf::Rgba), y_stride)),
+            1, width);
+        file.readPixels(first, last);
+        for (int y = first; y <= last; ++y) {
+            const Imf::Rgba* from = scratch.data() + width * static_cast<std::size_t>(y - first);
+            for (int x = target.shared.min.x; x <= target.shared.max.x; ++x) {
+                const Imf::Rgba& p = from[x - target.data.min.x];
+                float* to = target.at(x, y);
+                to[0] = p.r;
+                to[1] = p.g;
+                to[2] = p.b;
+                if (target.image.channels == 4) to[3] = p.a;
+            }
+        }
+    });
+}
+
+void spreadLuminance(Image& image, int threads) {
+    parallelForRuns(image.height, 64, threads, [&](std::size_t first, std::size_t last) {
+        for (std::size_t y = first; y < last; ++y) {
+            float* p = image.row(static_cast<int>(y));
+            for (int x = 0; x < image.width; ++x, p += image.channels)
+                p[1] = p[2] = p[0];
+        }
+    });
+}
+
+void describe(const std::vector<Imf::Header>& parts, const ExrChoice& choice,
+              const ReadOptions& options, const Target& target, ImageFile& file) {
+    const Imf::Header& header = parts[static_cast<std::size_t>(choice.part)];
+    file.format = "exr";
+    file.compression = compressionName(header.compression());
+    file.layers = exrLayers(parts);
+    if (Imf::hasEnvmap(header)) {
+        file.envmap = Imf::envmap(header) == Imf::ENVMAP_CUBE ? "cube" : "latlong";
+    }
+    if (choice.alpha && !options.keep_alpha) file.notes.push_back("its alpha channel is ignored");
+    if (choice.colour == ExrColour::luminance) {
+        file.notes.push_back("is luminance only; read as grey");
+    } else if (choice.colour == ExrColour::luminanceChroma) {
+        file.notes.push_back("is luminance and subsampled chroma; colours are reconstructed");
+    }
+    if (target.data != target.display) {
+        file.notes.push_back("its data window " + windowText(target.data) +
+                             " is not its display window " + windowText(target.display) +
+                             "; the image is the display window, 0 where there is no data");
+    }
+    noteChromaticities(header, file.notes);
+    if (parts.size() > 1) {
+        file.notes.push_back("has " + std::to_string(parts.size()) + " parts; part " +
+                             std::to_string(choice.part + 1) +
+                             (header.hasName() ? " (" + header.name() + ")" : "") + " is read");
+    }
+}
+
+ImageFile readParts(Imf::IStream& stream, const std::string& name, const ReadOptions& options) {
+    const std::vector<Imf::Header> parts = readHeaders(stream, name);
+    const ExrChoice choice = chooseExrLayer(parts, options.layer, name);
+    const Imf::Header& header = parts[static_cast<std::size_t>(choice.part)];
+    const bool alpha = options.keep_alpha && choice.alpha;
+    const bool chroma = choice.colour == ExrColour::luminanceChroma;
+    if (chroma && choice.part != 0) {
+        throw inputError(name, "has luminance and chroma in a part that is not the first; convert "
+                               "it to RGB first");
+    }
+
+    ImageFile file;
+    const Channels channels = channelsOf(header, choice, alpha, name);
+    file.pixel_type = typeName(channels.type);
+    const int threads = exrThreads(options.threads);
+    stream.seekg(0);
+    // An incomplete table of chunks means that the writer was interrupted: no guessing at it.
+    Imf::MultiPartInputFile input(stream, threads, false);
+    if (!input.partComplete(choice.part)) {
+        throw inputError(name, "is incomplete, its writer was interrupted; write it again");
+    }
+    Target target(header, alpha ? 4 : 3);
+    if (chroma) {
+        readLuminanceChroma(stream, choice, threads, target);
+    } else {
+        readChannels(input, choice, channels, target);
+        if (choice.colour == ExrColour::luminance) spreadLuminance(target.image, threads);
+    }
+    describe(parts, choice, options, target, file);
+    file.image = std::move(target.image);
+    return file;
+}
+
+} // namespace
+
+int exrThreads(int threads) {
+    const int count = threadCount(threads);
+    if (count == 1) return 0; // the calling thread does the work itself
+    if (Imf::globalThreadCount() < count) Imf::setGlobalThreadCount(count);
+    return count;
+}
+
+ImageFile readExr(const Source& source, const ReadOptions& options) {
+    try {
+        const std::unique_ptr<Imf::IStream> stream = openStream(source);
+        return readParts(*stream, source.name, options);
+    } catch (const Error&) {
+        throw;
+    } catch (const std::bad_alloc&) {
+        throw inputError(source.name, "does not fit into memory; shrink it first");
+    } catch (const std::exception& e) {
+        throw inputError(source.name, std::string("is a damaged or truncated OpenEXR file (") +
+                                          e.what() + "); write it again");
+    }
+}
+
+} // namespace ibl

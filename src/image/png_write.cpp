@@ -1,0 +1,172 @@
+#include "image/png.h"
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "image/srgb.h"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <string_view>
+#include <vector>
+
+// libpng compresses on one thread and filters row by row; a PNG is a zlib stream in chunks, which
+// is little enough to write that strips of rows can be compressed at once. Strips end on byte
+// boundaries (Z_SYNC_FLUSH) and start with an empty window, so that they simply follow each other
+// (as in pigz, Mark Adler); their checksums combine.
+
+namespace ibl {
+namespace {
+
+/// Fixed, so that the bytes do not depend on the number of threads.
+constexpr std::size_t kStripBytes = 512 * 1024;
+
+void appendBigEndian(std::string& out, std::uint32_t value) {
+    for (int shift = 24; shift >= 0; shift -= 8)
+        out.push_back(static_cast<char>(value >> shift));
+}
+
+void writeChunk(OutputFile& file, std::string_view type, std::string_view data) {
+    std::string chunk;
+    chunk.reserve(data.size() + 12);
+    appendBigEndian(chunk, static_cast<std::uint32_t>(data.size()));
+    chunk += type;
+    chunk += data;
+    const auto* checked = reinterpret_cast<const Bytef*>(chunk.data()) + 4;
+    appendBigEndian(chunk, static_cast<std::uint32_t>(
+                               crc32_z(crc32_z(0, nullptr, 0), checked, chunk.size() - 4)));
+    file.write(chunk);
+}
+
+/// Filter 2, "up": differences from the row above, `above` null for the first.
+void filterUp(const std::uint8_t* row, const std::uint8_t* above, std::size_t count,
+              std::uint8_t* out) {
+    out[0] = 2;
+    for (std::size_t i = 0; i < count; ++i) {
+        out[i + 1] = static_cast<std::uint8_t>(row[i] - (above ? above[i] : 0));
+    }
+}
+
+struct Strip {
+    std::string deflated;
+    uLong checksum = 0; ///< Adler-32 of the filtered bytes
+    std::size_t size = 0;
+};
+
+Strip deflateStrip(const std::vector<std::uint8_t>& filtered, bool last) {
+    Strip strip;
+    strip.size = filtered.size();
+    strip.checksum = adler32_z(adler32_z(0, nullptr, 0), filtered.data(), filtered.size());
+    z_stream z = {};
+    // Level 1: after the up filter higher ones cost two to ten times the time for a few per cent.
+    if (deflateInit2(&z, 1, Z_DEFLATED, -15, 9, Z_DEFAULT_STRATEGY) != Z_OK) {
+        throw std::bad_alloc();
+    }
+    strip.deflated.resize(deflateBound(&z, static_cast<uLong>(filtered.size())) + 16);
+    z.next_in = const_cast<Bytef*>(filtered.data());
+    z.avail_in = static_cast<uInt>(filtered.size());
+    z.next_out = reinterpret_cast<Bytef*>(strip.deflated.data());
+    z.avail_out = static_cast<uInt>(strip.deflated.size());
+    deflate(&z, last ? Z_FINISH : Z_SYNC_FLUSH);
+    strip.deflated.resize(strip.deflated.size() - z.avail_out);
+    deflateEnd(&z);
+    return strip;
+}
+
+/// Writes the file, getting rows of encoded bytes from `rowAt(y, buffer)`, which returns where row
+/// y is: in the buffer that it was given, or elsewhere.
+template <class RowAt>
+void writeRows(OutputFile& file, int width, int height, int channels, int threads,
+               const RowAt& rowAt) {
+    if (width < 1 || height < 1 || (channels != 3 && channels != 4)) {
+        throw std::logic_error("writePng8 takes RGB or RGBA pixels");
+    }
+    const std::size_t row_bytes = static_cast<std::size_t>(width) * channels;
+    const std::size_t rows_a_strip = std::max<std::size_t>(1, kStripBytes / (row_bytes + 1));
+    const std::size_t rows = static_cast<std::size_t>(height);
+    std::vector<Strip> strips((rows + rows_a_strip - 1) / rows_a_strip);
+    parallelForRuns(rows, rows_a_strip, threads, [&](std::size_t first, std::size_t last) {
+        std::vector<std::uint8_t> filtered((last - first) * (row_bytes + 1));
+        std::array<std::vector<std::uint8_t>, 2> buffers;
+        for (auto& buffer : buffers)
+            buffer.resize(row_bytes);
+        const std::uint8_t* above = first > 0 ? rowAt(first - 1, buffers[1]) : nullptr;
+        for (std::size_t y = first; y < last; ++y) {
+            const std::uint8_t* row = rowAt(y, buffers[(y - first) % 2]);
+            filterUp(row, above, row_bytes, filtered.data() + (y - first) * (row_bytes + 1));
+            above = row;
+        }
+        strips[first / rows_a_strip] = deflateStrip(filtered, last == rows);
+    });
+
+    file.write("\x89PNG\r\n\x1a\n");
+    std::string header;
+    appendBigEndian(header, static_cast<std::uint32_t>(width));
+    appendBigEndian(header, static_cast<std::uint32_t>(height));
+    header += {'\x08', channels == 4 ? '\x06' : '\x02', '\0', '\0', '\0'};
+    writeChunk(file, "IHDR", header);
+    writeChunk(file, "sRGB", std::string_view("\0", 1)); // perceptual intent
+    uLong checksum = adler32_z(0, nullptr, 0);
+    for (std::size_t s = 0; s < strips.size(); ++s) {
+        Strip& strip = strips[s];
+        checksum = adler32_combine(checksum, strip.checksum, static_cast<z_off_t>(strip.size));
+        // zlib's two bytes (32 KiB window, fastest), the deflate blocks, the checksum.
+        if (s == 0) strip.deflated.insert(0, "\x78\x01");
+        if (s + 1 == strips.size()) {
+            appendBigEndian(strip.deflated, static_cast<std::uint32_t>(checksum));
+        }
+        writeChunk(file, "IDAT", strip.deflated);
+    }
+    writeChunk(file, "IEND", {});
+}
+
+/// One row of linear floats to sRGB bytes. Values outside [0, 1] are counted.
+WriteLosses encodeRow(const Image& image, int y, std::uint8_t* out) {
+    WriteLosses losses;
+    const float* p = image.row(y);
+    for (int x = 0; x < image.width; ++x, p += image.channels, out += image.channels) {
+        float unpremultiply = 1;
+        if (image.channels == 4) {
+            const float alpha = std::clamp(std::isnan(p[3]) ? 0.0F : p[3], 0.0F, 1.0F);
+            out[3] = static_cast<std::uint8_t>(alpha * 255 + 0.5F);
+            unpremultiply = alpha > 0 ? 1 / alpha : 0;
+        }
+        for (int c = 0; c < 3; ++c) {
+            const float v = p[c] * unpremultiply;
+            out[c] = linearToSrgb8(v);
+            losses.above += v > 1;
+            losses.below += v < 0;
+            losses.not_number += std::isnan(v);
+        }
+    }
+    return losses;
+}
+
+} // namespace
+
+void writePng8(OutputFile& file, std::span<const std::uint8_t> bytes, int width, int height,
+               int channels, int threads) {
+    const std::size_t row_bytes = static_cast<std::size_t>(width) * channels;
+    writeRows(
+        file, width, height, channels, threads,
+        [&](std::size_t y, std::vector<std::uint8_t>&) { return bytes.data() + y * row_bytes; });
+}
+
+WriteLosses writePng(OutputFile& file, const Image& image, int threads) {
+    std::vector<WriteLosses> losses(static_cast<std::size_t>(image.height));
+    writeRows(file, image.width, image.height, image.channels, threads,
+              [&](std::size_t y, std::vector<std::uint8_t>& buffer) {
+                  const WriteLosses row = encodeRow(image, static_cast<int>(y), buffer.data());
+                  losses[y] = row;
+                  return static_cast<const std::uint8_t*>(buffer.data());
+              });
+    WriteLosses total;
+    for (const WriteLosses& row : losses)
+        total += row;
+    return total;
+}
+
+} // namespace ibl

@@ -1,0 +1,56 @@
+#include "image/read.h"
+
+#include "core/error.h"
+#include "image/exr.h"
+#include "image/oiio.h"
+#include "image/png.h"
+#include "image/radiance.h"
+#include "image/source.h"
+
+#include <algorithm>
+#include <new>
+#include <string_view>
+
+namespace ibl {
+namespace {
+
+bool startsWith(const Source& source, std::string_view magic) {
+    return source.bytes.size() >= magic.size() &&
+           std::equal(magic.begin(), magic.end(), source.bytes.begin(),
+                      [](char a, std::uint8_t b) { return static_cast<std::uint8_t>(a) == b; });
+}
+
+/// A format can only have the layer that it is.
+void refuseLayer(const Source& source, const ReadOptions& options) {
+    if (!options.layer.empty()) {
+        throw inputError(source.name,
+                         "has no layer '" + options.layer + "'; only OpenEXR files have layers");
+    }
+}
+
+ImageFile readSource(Source& source, const ReadOptions& options) {
+    if (startsWith(source, "\x76\x2f\x31\x01")) return readExr(source, options);
+    refuseLayer(source, options);
+    if (startsWith(source, "#?")) {
+        readWhole(source);
+        return readRadiance(source.bytes, source.name, options.threads);
+    }
+    if (startsWith(source, "\x89PNG\r\n\x1a\n")) {
+        readWhole(source);
+        return readPng(source.bytes, source.name, options);
+    }
+    return readOiio(source, options);
+}
+
+} // namespace
+
+ImageFile readImage(const std::string& path, const ReadOptions& options) {
+    Source source = openSource(path);
+    try {
+        return readSource(source, options);
+    } catch (const std::bad_alloc&) {
+        throw inputError(source.name, "does not fit into memory; shrink it first");
+    }
+}
+
+} // namespace ibl

@@ -1,0 +1,86 @@
+#include "image/write.h"
+
+#include "core/error.h"
+#include "image/exr.h"
+#include "image/oiio.h"
+#include "image/png.h"
+#include "image/radiance.h"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <stdexcept>
+
+namespace ibl {
+namespace {
+
+/// The format asked for, in lower case without a dot.
+std::string formatOf(const std::string& path, const WriteOptions& options) {
+    std::string format = options.format;
+    if (format.empty() && path != "-") format = std::filesystem::path(path).extension().string();
+    if (format.starts_with('.')) format.erase(0, 1);
+    std::transform(format.begin(), format.end(), format.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (format.empty()) {
+        throw outputError(path == "-" ? "standard output" : path,
+                          "its name does not say its format; say which, or use a name that ends in "
+                          ".exr, .hdr or .png");
+    }
+    return format;
+}
+
+bool isRadiance(const std::string& format) {
+    return format == "hdr" || format == "pic" || format == "rgbe";
+}
+
+bool isTiff(const std::string& format) {
+    return format == "tif" || format == "tiff";
+}
+
+std::string counted(std::size_t count, const std::string& one, const std::string& many) {
+    return std::to_string(count) + (count == 1 ? one : many);
+}
+
+} // namespace
+
+WriteLosses& WriteLosses::operator+=(const WriteLosses& other) {
+    above += other.above;
+    below += other.below;
+    not_number += other.not_number;
+    return *this;
+}
+
+WriteLosses writeImage(OutputSet& outputs, const std::string& path, const Image& image,
+                       const WriteOptions& options) {
+    if (image.width < 1 || image.height < 1 || (image.channels != 3 && image.channels != 4)) {
+        throw std::logic_error("writeImage takes RGB or RGBA pixels");
+    }
+    const std::string format = formatOf(path, options);
+    if (format != "exr" && !(options.compression.empty() && options.envmap.empty())) {
+        throw outputError(path, "only OpenEXR files have a compression or envmap to choose");
+    }
+    OutputFile& file = outputs.add(path);
+    if (format == "exr") return writeExr(file, image, options);
+    if (isRadiance(format)) return writeRadiance(file, image, options.threads);
+    if (format == "png") return writePng(file, image, options.threads);
+    return writeOiio(file, image, format, options);
+}
+
+std::vector<std::string> describeLosses(const WriteLosses& losses, const std::string& path,
+                                        const WriteOptions& options) {
+    const std::string format = formatOf(path, options);
+    const bool wide = format == "exr" || isTiff(format); // half, or nothing is lost
+    const std::string largest = wide ? "65504" : isRadiance(format) ? "1.7e38" : "1";
+    std::vector<std::string> lines;
+    const auto add = [&](std::size_t count, const std::string& what, const std::string& as) {
+        if (count == 0) return;
+        lines.push_back(counted(count, " value " + what + " was written as " + as,
+                                " values " + what + " were written as " + as));
+    };
+    add(losses.above, "above " + largest, largest);
+    add(losses.below, wide ? "below -65504" : "below 0", wide ? "-65504" : "0");
+    add(losses.not_number, "that is no number", "0");
+    return lines;
+}
+
+} // namespace ibl
