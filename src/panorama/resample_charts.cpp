@@ -1,0 +1,157 @@
+// Between lat-longs and cubes, by the exact overlaps of their pixels where it shrinks.
+#include "panorama/lookup.h"
+#include "panorama/resample_parts.h"
+
+#include "core/parallel.h"
+
+namespace ibl {
+namespace {
+
+/// Square root of a texel's solid angle: its area on the face times cos^3 of the angle from the
+/// face's axis.
+double texelPitch(double pitch_on_face, const V3d& direction) {
+    const double longest =
+        std::max({std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)});
+    const double cosine = longest / direction.length();
+    return pitch_on_face * cosine * std::sqrt(cosine);
+}
+
+/// Radiance times area, and area.
+struct Sum {
+    V3d radiance{0, 0, 0};
+    double area = 0;
+
+    void add(const float* pixel, double part) {
+        radiance += V3d(pixel[0], pixel[1], pixel[2]) * part;
+        area += part;
+    }
+};
+
+/// What one face sends to the lat-long: sums over columns x0 ... (around the seam) and rows y0 ...
+struct FaceSums {
+    int x0 = 0, y0 = 0, width = 0, height = 0;
+    std::vector<Sum> sums;
+
+    Sum* find(int x, int y, int columns) {
+        const int across = (x - x0 + columns) % columns, down = y - y0;
+        if (across >= width || down < 0 || down >= height) return nullptr;
+        return &sums[static_cast<std::size_t>(down) * static_cast<std::size_t>(width) +
+                     static_cast<std::size_t>(across)];
+    }
+};
+
+/// The columns and rows that a face can reach: an eighth of a turn to either side of its axis, or
+/// up to arctan sqrt 2 from its pole.
+FaceSums roomForFace(int face, const LatlongGrid& grid) {
+    FaceSums room;
+    const int rows = grid.rows();
+    if (face / 2 == 1) {
+        room.width = grid.columns;
+        while (room.height < rows && grid.theta[static_cast<std::size_t>(room.height)] <
+                                         std::atan(std::sqrt(2.0)) + 1e-9) {
+            ++room.height;
+        }
+        room.y0 = face == 2 ? 0 : rows - room.height;
+    } else {
+        constexpr std::array<double, 6> kCentre{0.25, 0.75, 0, 0, 0.5, 0};
+        const double at = kCentre[static_cast<std::size_t>(face)] * grid.columns - grid.first;
+        const int first = static_cast<int>(std::floor(at - grid.columns / 8.0)) - 1;
+        room.width = std::min(grid.columns, grid.columns / 4 + 4);
+        room.x0 = ((first % grid.columns) + grid.columns) % grid.columns;
+        room.height = rows;
+    }
+    room.sums.resize(static_cast<std::size_t>(room.width) * static_cast<std::size_t>(room.height));
+    return room;
+}
+
+} // namespace
+
+void latlongToCube(const Panorama& source, Panorama& result, int threads) {
+    const bool from_border = hasBorderRule(source.layout), to_border = hasBorderRule(result.layout);
+    const CubePlacement place(result);
+    const int edge = place.edge;
+    const double pitch_on_face = centrePitch(2, edge, to_border);
+    const double row_pitch = centrePitch(kPi, source.image.height, from_border);
+    CubeLatlongOverlaps overlaps;
+    if (areaShare(pitch_on_face / row_pitch) > 0) {
+        overlaps = cubeLatlongOverlaps(
+            cubeGrid(edge, to_border),
+            latlongGrid(source.image.width, source.image.height, from_border), threads);
+    }
+    const LatlongPixels pixels(source);
+    const Sampler sampler = makeSampler(source);
+
+    parallelFor(static_cast<std::size_t>(6 * edge), threads, [&](std::size_t task) {
+        const int face = static_cast<int>(task) / edge, j = static_cast<int>(task) % edge;
+        const double t = 2 * centreAt(j, edge, to_border) - 1;
+        for (int i = 0; i < edge; ++i) {
+            const V3d direction = cubeDirection({face, 2 * centreAt(i, edge, to_border) - 1, t});
+            const double pitch = texelPitch(pitch_on_face, direction);
+            const double share = areaShare(pitch / row_pitch);
+            V3d value(0);
+            if (share > 0) {
+                Sum sum;
+                forEachOverlap(overlaps, face, i, j,
+                               [&](int x, int y, double area) { sum.add(pixels.at(x, y), area); });
+                value += sum.radiance / sum.area * share;
+            }
+            if (share < 1) value += radianceAt(sampler, direction, pitch) * (1 - share);
+            const V2i at = place.pixel(face, i, j);
+            setPixel(result.image.at(at.x, at.y), value);
+        }
+    });
+}
+
+void cubeToLatlong(const Panorama& source, Panorama& result, int threads) {
+    const bool from_border = hasBorderRule(source.layout), to_border = hasBorderRule(result.layout);
+    const CubePlacement place(source);
+    const int edge = place.edge;
+    const LatlongGrid grid = latlongGrid(result.image.width, result.image.height, to_border);
+    const double pitch_on_face = centrePitch(2, edge, from_border);
+    const double row_pitch = centrePitch(kPi, grid.rows(), to_border);
+
+    // Each face gathers its own sums, which are added in the order of the faces afterwards: the
+    // same bytes for any number of threads.
+    std::array<FaceSums, 6> sums;
+    if (areaShare(row_pitch / texelPitch(pitch_on_face, V3d(1))) > 0) {
+        const CubeLatlongOverlaps overlaps =
+            cubeLatlongOverlaps(cubeGrid(edge, from_border), grid, threads);
+        parallelFor(6, threads, [&](std::size_t f) {
+            const int face = static_cast<int>(f);
+            sums[f] = roomForFace(face, grid);
+            for (int j = 0; j < edge; ++j) {
+                for (int i = 0; i < edge; ++i) {
+                    const V2i at = place.pixel(face, i, j);
+                    const float* pixel = source.image.at(at.x, at.y);
+                    forEachOverlap(overlaps, face, i, j, [&](int x, int y, double area) {
+                        sums[f].find(x, y, grid.columns)->add(pixel, area);
+                    });
+                }
+            }
+        });
+    }
+    const Sampler sampler = makeSampler(source);
+    parallelFor(static_cast<std::size_t>(grid.rows()), threads, [&](std::size_t row) {
+        const int y = static_cast<int>(row);
+        const double v = centreAt(y, grid.rows(), to_border);
+        for (int x = 0; x < grid.columns; ++x) {
+            const V3d direction = latlongDirection((x + 0.5 + grid.first) / grid.columns, v);
+            const double share = areaShare(row_pitch / texelPitch(pitch_on_face, direction));
+            V3d value(0);
+            if (share > 0) {
+                Sum total;
+                for (FaceSums& face : sums) {
+                    const Sum* sum = face.find(x, y, grid.columns);
+                    if (!sum) continue;
+                    total.radiance += sum->radiance;
+                    total.area += sum->area;
+                }
+                value += total.radiance / total.area * share;
+            }
+            if (share < 1) value += radianceAt(sampler, direction) * (1 - share);
+            setPixel(result.image.at(x, y), value);
+        }
+    });
+}
+
+} // namespace ibl

@@ -1,0 +1,77 @@
+// The four conversions behind `resample`: each fills `result`, whose layout and extent are set and
+// whose pixels are 0.
+#pragma once
+
+#include "panorama/layouts.h"
+#include "panorama/overlap.h"
+#include "panorama/panorama.h"
+
+#include <algorithm>
+
+namespace ibl {
+
+void latlongToLatlong(const Panorama& source, Panorama& result, int threads);
+void latlongToCube(const Panorama& source, Panorama& result, int threads);
+void cubeToLatlong(const Panorama& source, Panorama& result, int threads);
+void cubeToCube(const Panorama& source, Panorama& result, int threads);
+
+/// The share of the area filter (the rest is interpolation) where a new texel is `ratio` old pixels
+/// wide: none up to 1, all from 1.25 on, smooth between.
+inline double areaShare(double ratio) {
+    const double x = std::clamp((ratio - 1) / 0.25, 0.0, 1.0);
+    return x * x * (3 - 2 * x);
+}
+
+inline bool hasBorderRule(Layout layout) {
+    return layout == Layout::exrLatlong || layout == Layout::exrCube;
+}
+
+/// Distance of pixel centres from pole to pole, or over the two units of a face.
+inline double centrePitch(double length, int pixels, bool border_rule) {
+    return length / (border_rule && pixels > 1 ? pixels - 1 : pixels);
+}
+
+/// Position of pixel i's centre, as a part of the way from end to end.
+inline double centreAt(int i, int pixels, bool border_rule) {
+    if (border_rule && pixels > 1) return static_cast<double>(i) / (pixels - 1);
+    return (i + 0.5) / pixels;
+}
+
+/// The six faces' places in an image.
+struct CubePlacement {
+    int edge;
+    std::array<FacePlacement, 6> faces;
+
+    explicit CubePlacement(const Panorama& p)
+        : edge(*layoutSize(p.layout, p.image.width, p.image.height)) {
+        for (int f = 0; f < 6; ++f)
+            faces[static_cast<std::size_t>(f)] = facePlacement(p.layout, edge, f);
+    }
+    V2i pixel(int face, int i, int j) const {
+        return faces[static_cast<std::size_t>(face)].pixel(i, j);
+    }
+};
+
+/// A lat-long's pixels one for each rectangle of its grid: by the border rule the first and the
+/// last column are halves of one.
+class LatlongPixels {
+public:
+    explicit LatlongPixels(const Panorama& p);
+    const float* at(int x, int y) const { return image_->at(x, y); }
+    const float* row(int y) const { return image_->row(y); }
+
+private:
+    Image folded_;
+    const Image* image_;
+};
+
+inline void setPixel(float* pixel, const V3d& value) {
+    for (int c = 0; c < 3; ++c)
+        pixel[c] = static_cast<float>(value[c]);
+}
+
+/// Gives the texels of an exr layout that look in one direction (its seam, poles, edges of faces)
+/// one value, their mean; they cover equal areas, so that energy stays.
+void mergeBorder(Panorama& panorama);
+
+} // namespace ibl
