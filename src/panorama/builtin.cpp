@@ -1,0 +1,188 @@
+#include "panorama/builtin.h"
+
+#include "panorama/conventions.h"
+
+#include "core/error.h"
+#include "core/parallel.h"
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+namespace ibl {
+namespace {
+
+constexpr std::string_view kPrefix = "builtin:";
+
+void set(float* pixel, const V3d& value) {
+    for (int c = 0; c < 3; ++c)
+        pixel[c] = static_cast<float>(value[c]);
+}
+
+// The sky: luminance by the CIE standard general sky (CIE S 011/ISO 15469), type 12, "clear, low
+// turbidity": proportional to (1 + a exp(b / cos Z)) (1 + c (exp(d chi) - exp(d pi/2)) + e cos^2
+// chi), with Z the angle from the zenith and chi that from the sun. The standard knows no colour:
+// ours goes from blue overhead to pale at the horizon and about the sun.
+constexpr double kA = -1, kB = -0.32, kC = 10, kD = -3, kE = 0.45;
+constexpr double kZenithRadiance = 0.25;
+constexpr std::array<double, 3> kBlue{0.45, 0.95, 2.0}, kPale{1.0, 1.05, 1.1};
+// The sun: its true angular radius, and the radiance above the atmosphere of a midday in these
+// units (1e5 times the sky's, as in nature), 40 degrees up and 30 degrees from +Z towards +X.
+constexpr double kSunRadius = 0.2666 * kPi / 180;
+constexpr std::array<double, 3> kSunRadiance{30000, 27500, 23000};
+constexpr double kSunElevation = 40 * kPi / 180, kSunAzimuth = 30 * kPi / 180;
+// The ground: about a fifth of the light that falls on it.
+constexpr std::array<double, 3> kGround{0.17, 0.155, 0.13};
+
+V3d vector(const std::array<double, 3>& v) {
+    return {v[0], v[1], v[2]};
+}
+
+V3d sunDirection() {
+    return {std::cos(kSunElevation) * std::sin(kSunAzimuth), std::sin(kSunElevation),
+            std::cos(kSunElevation) * std::cos(kSunAzimuth)};
+}
+
+V3d skyRadiance(double cos_zenith, double chi) {
+    const double scattering =
+        1 + kC * (std::exp(kD * chi) - std::exp(kD * kPi / 2)) + kE * std::cos(chi) * std::cos(chi);
+    const double gradation = 1 + kA * std::exp(kB / std::max(cos_zenith, 1e-3));
+    const double at_zenith = 1 + kA * std::exp(kB);
+    const double haze = std::max(std::pow(1 - cos_zenith, 4), 0.8 * std::exp(-6 * chi));
+    const V3d colour = vector(kBlue) * (1 - haze) + vector(kPale) * haze;
+    return colour * (kZenithRadiance * scattering * gradation / at_zenith);
+}
+
+/// Adds the disc to the pixels it covers, with the energy of the true disc at any resolution: it is
+/// sampled at equal steps of solid angle (rings of equal area, points at equal angles).
+void addSun(Image& image) {
+    constexpr int kRings = 32, kPoints = 128;
+    const V3d sun = sunDirection();
+    const V3d right = V3d(0, 1, 0).cross(sun).normalized(), up = sun.cross(right);
+    const double solid_angle = 4 * kPi * std::pow(std::sin(0.5 * kSunRadius), 2);
+    const V3d share = vector(kSunRadiance) * (solid_angle / (kRings * kPoints));
+    for (int ring = 0; ring < kRings; ++ring) {
+        const double radius = kSunRadius * std::sqrt((ring + 0.5) / kRings);
+        for (int point = 0; point < kPoints; ++point) {
+            const double angle = 2 * kPi * (point + 0.5 * (ring % 2)) / kPoints;
+            const V3d d = sun * std::cos(radius) +
+                          (right * std::cos(angle) + up * std::sin(angle)) * std::sin(radius);
+            const V2d p = latlongPoint(d);
+            const int x = std::min(static_cast<int>(p.x * image.width), image.width - 1);
+            const int y = std::min(static_cast<int>(p.y * image.height), image.height - 1);
+            const double pixel = latlongPixelSolidAngle(image.width, image.height, y);
+            for (int c = 0; c < 3; ++c) {
+                image.at(x, y)[c] += static_cast<float>(share[c] / pixel);
+            }
+        }
+    }
+}
+
+/// Rows are as they are at their centres, but for one that the horizon cuts, which is half of each.
+void sky(Image& image, int threads) {
+    const V3d sun = sunDirection();
+    parallelFor(static_cast<std::size_t>(image.height), threads, [&](std::size_t row) {
+        const int y = static_cast<int>(row);
+        const double up = (2.0 * y + 1 < image.height) ? 1 : (2 * y + 1 == image.height ? 0.5 : 0);
+        const double cos_zenith = std::max(0.0, std::cos(kPi * (y + 0.5) / image.height));
+        for (int x = 0; x < image.width; ++x) {
+            V3d value = vector(kGround) * (1 - up);
+            if (up > 0) {
+                const V3d d = latlongDirection((x + 0.5) / image.width, (y + 0.5) / image.height);
+                const double chi = 2 * std::asin(std::min(1.0, 0.5 * (d - sun).length()));
+                value += skyRadiance(cos_zenith, chi) * up;
+            }
+            set(image.at(x, y), value);
+        }
+    });
+    addSun(image);
+}
+
+// The compass: glyphs of 5 x 7 cells, a row a number, the leftmost cell the highest bit.
+using Glyph = std::array<unsigned char, 7>;
+constexpr Glyph kPlus{0b00000, 0b00100, 0b00100, 0b11111, 0b00100, 0b00100, 0b00000};
+constexpr Glyph kMinus{0b00000, 0b00000, 0b00000, 0b11111, 0b00000, 0b00000, 0b00000};
+constexpr std::array<Glyph, 3> kLetters{{
+    {0b10001, 0b10001, 0b01010, 0b00100, 0b01010, 0b10001, 0b10001},
+    {0b10001, 0b10001, 0b01010, 0b00100, 0b00100, 0b00100, 0b00100},
+    {0b11111, 0b00001, 0b00010, 0b00100, 0b01000, 0b10000, 0b11111},
+}};
+constexpr double kCell = 0.1; ///< of a glyph, where a face spans 2
+/// +X red, +Y green, +Z blue; the negative directions in the colours opposite.
+constexpr std::array<std::array<double, 3>, 6> kColours{{{0.9, 0.15, 0.1},
+                                                         {0.1, 0.6, 0.65},
+                                                         {0.2, 0.75, 0.15},
+                                                         {0.65, 0.15, 0.6},
+                                                         {0.12, 0.25, 0.95},
+                                                         {0.75, 0.65, 0.1}}};
+constexpr std::array<double, 3> kInk{4, 4, 4}, kGridLine{0.05, 0.05, 0.05};
+
+/// A face's point as seen from inside: a to the right, b up (+-Y as in the vertical cross, where
+/// they hang above and below +Z).
+V2d seenFromInside(const CubePoint& p) {
+    // All cells of the crosses are OpenGL's faces turned over left to right.
+    return {-p.s, -p.t};
+}
+
+bool inked(int face, const V2d& at) {
+    // The sign and the letter with a cell between them: 11 x 7 cells about the middle.
+    const int column = static_cast<int>(std::floor(at.x / kCell + 5.5));
+    const int row = static_cast<int>(std::floor(3.5 - at.y / kCell));
+    if (row < 0 || row >= 7 || column < 0 || column >= 11 || column == 5) return false;
+    const Glyph& sign = face % 2 == 0 ? kPlus : kMinus;
+    const Glyph& glyph = column < 5 ? sign : kLetters[static_cast<std::size_t>(face / 2)];
+    return (glyph[static_cast<std::size_t>(row)] >> (4 - column % 6)) & 1;
+}
+
+V3d compassRadiance(const V3d& direction) {
+    const CubePoint p = cubePoint(direction);
+    const V2d at = seenFromInside(p);
+    if (inked(p.face, at)) return vector(kInk);
+    // Lines every quarter of a face's half, thicker along its edges.
+    const auto onLine = [](double s) {
+        const double off = std::abs(s - 0.25 * std::round(4 * s));
+        return off < (std::abs(s) > 0.9 ? 0.015 : 0.006);
+    };
+    if (onLine(p.s) || onLine(p.t)) return vector(kGridLine);
+    return vector(kColours[static_cast<std::size_t>(p.face)]);
+}
+
+void compass(Image& image, int threads) {
+    constexpr int kSamples = 3; // across a pixel: enough for letters without steps
+    parallelFor(static_cast<std::size_t>(image.height), threads, [&](std::size_t row) {
+        const int y = static_cast<int>(row);
+        for (int x = 0; x < image.width; ++x) {
+            V3d sum(0);
+            for (int k = 0; k < kSamples * kSamples; ++k) {
+                const double u = x + (k % kSamples + 0.5) / kSamples;
+                const double v = y + (k / kSamples + 0.5) / kSamples;
+                sum += compassRadiance(latlongDirection(u / image.width, v / image.height));
+            }
+            set(image.at(x, y), sum / (kSamples * kSamples));
+        }
+    });
+}
+
+} // namespace
+
+bool isBuiltin(std::string_view name) {
+    return name.substr(0, kPrefix.size()) == kPrefix;
+}
+
+Panorama builtinProbe(std::string_view name, int height, int threads) {
+    const std::string_view kind = isBuiltin(name) ? name.substr(kPrefix.size()) : "";
+    Panorama probe{Layout::latlong, Image(2 * height, height)};
+    if (kind == "furnace") {
+        std::fill(probe.image.pixels.begin(), probe.image.pixels.end(), 1.0f);
+    } else if (kind == "sky") {
+        sky(probe.image, threads);
+    } else if (kind == "compass") {
+        compass(probe.image, threads);
+    } else {
+        throw inputError(name, "no such built-in probe; there are builtin:sky, builtin:compass "
+                               "and builtin:furnace");
+    }
+    return probe;
+}
+
+} // namespace ibl

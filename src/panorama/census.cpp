@@ -1,0 +1,257 @@
+#include "panorama/census.h"
+
+#include "core/error.h"
+#include "core/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace ibl {
+namespace {
+
+constexpr V3d kLuminance(0.2125, 0.7154, 0.0721);
+
+struct RowCensus {
+    BadPixels nan, infinite, negative;
+    V3d min{std::numeric_limits<double>::infinity()};
+    V3d max{-std::numeric_limits<double>::infinity()};
+    V3d energy{0, 0, 0};
+    double brightest = -std::numeric_limits<double>::infinity();
+    int brightest_x = 0;
+};
+
+/// `worse` says whether a value goes beyond the extreme so far.
+template <class Worse>
+void note(BadPixels& bad, bool is_new, int x, int y, float value, Worse worse) {
+    const V2i at(x, y);
+    if (bad.count == 0) bad = {0, at, value, at};
+    if (is_new) ++bad.count;
+    if (worse(value, bad.extreme)) {
+        bad.extreme = value;
+        bad.extreme_at = at;
+    }
+}
+
+void countPixel(RowCensus& row, const float* pixel, int x, int y, double solid_angle) {
+    bool nan = false, infinite = false, negative = false;
+    for (int c = 0; c < 3; ++c) {
+        const float value = pixel[c];
+        if (std::isnan(value)) {
+            note(row.nan, !nan, x, y, value, [](float, float) { return false; });
+            nan = true;
+        } else if (std::isinf(value)) {
+            note(row.infinite, !infinite, x, y, value, [](float, float) { return false; });
+            infinite = true;
+        } else {
+            if (value < 0) {
+                note(row.negative, !negative, x, y, value, std::less<float>());
+                negative = true;
+            }
+            row.min[c] = std::min(row.min[c], static_cast<double>(value));
+            row.max[c] = std::max(row.max[c], static_cast<double>(value));
+            row.energy[c] += value * solid_angle;
+        }
+    }
+    if (nan || infinite) return;
+    const double luminance = V3d(pixel[0], pixel[1], pixel[2]).dot(kLuminance);
+    if (luminance > row.brightest) {
+        row.brightest = luminance;
+        row.brightest_x = x;
+    }
+}
+
+void merge(BadPixels& total, const BadPixels& row, bool lower) {
+    if (row.count == 0) return;
+    if (total.count == 0) {
+        total = row;
+        return;
+    }
+    total.count += row.count;
+    if (lower && row.extreme < total.extreme) {
+        total.extreme = row.extreme;
+        total.extreme_at = row.extreme_at;
+    }
+}
+
+bool valid(float value) {
+    return std::isfinite(value) && value >= 0;
+}
+
+/// The eight neighbours of a pixel within its face, or around the seam of a lat-long.
+template <class Use>
+void forEachNeighbour(const Panorama& p, int x, int y, Use&& use) {
+    const int width = p.image.width, height = p.image.height;
+    const bool latlong = p.layout == Layout::latlong || p.layout == Layout::exrLatlong;
+    const int edge = latlong ? 0 : *layoutSize(p.layout, width, height);
+    for (int dy = -1; dy <= 1; ++dy) {
+        for (int dx = -1; dx <= 1; ++dx) {
+            int nx = x + dx;
+            const int ny = y + dy;
+            if (latlong) nx = (nx + width) % width;
+            if ((nx == x && ny == y) || nx < 0 || ny < 0 || nx >= width || ny >= height) continue;
+            if (!latlong && (nx / edge != x / edge || ny / edge != y / edge)) continue;
+            use(nx, ny);
+        }
+    }
+}
+
+/// Mends one channel. Returns the pixels it has touched.
+class ChannelRepair {
+public:
+    ChannelRepair(Panorama& panorama, int channel) : panorama_(panorama), channel_(channel) {}
+
+    void run(std::string_view subject, std::vector<char>& touched) {
+        const std::size_t pixels = static_cast<std::size_t>(panorama_.image.width) *
+                                   static_cast<std::size_t>(panorama_.image.height);
+        bool any_bad = false, any_valid = false;
+        for (std::size_t i = 0; i < pixels; ++i) {
+            float& value = at(i);
+            if (std::isfinite(value) && value < 0) {
+                value = 0;
+                touched[i] = 1;
+            }
+            if (valid(value)) {
+                any_valid = true;
+            } else {
+                any_bad = true;
+                touched[i] = 1;
+            }
+        }
+        if (!any_bad) return;
+        if (!any_valid) {
+            throw inputError(subject, "no pixel holds a valid value to mend the others from; "
+                                      "use another image");
+        }
+        mendFromRim(pixels);
+    }
+
+private:
+    float& at(std::size_t i) {
+        return panorama_.image.pixels[i * 3 + static_cast<std::size_t>(channel_)];
+    }
+
+    /// Rim after rim of a patch: a rim takes its values from what was valid before it.
+    void mendFromRim(std::size_t pixels) {
+        const auto width = static_cast<std::size_t>(panorama_.image.width);
+        std::vector<char> queued(pixels, 0);
+        std::vector<std::size_t> rim;
+        double sum = 0;
+        long count = 0;
+        for (std::size_t i = 0; i < pixels; ++i) {
+            if (!valid(at(i))) continue;
+            sum += at(i);
+            ++count;
+        }
+        for (std::size_t i = 0; i < pixels; ++i) {
+            if (valid(at(i))) continue;
+            bool at_rim = false;
+            neighbours(i, width, [&](std::size_t n) { at_rim |= valid(at(n)); });
+            if (!at_rim) continue;
+            rim.push_back(i);
+            queued[i] = 1;
+        }
+        while (!rim.empty()) {
+            std::vector<float> mended(rim.size());
+            for (std::size_t k = 0; k < rim.size(); ++k)
+                mended[k] = fromNeighbours(rim[k], width);
+            std::vector<std::size_t> next;
+            for (std::size_t k = 0; k < rim.size(); ++k)
+                at(rim[k]) = mended[k];
+            for (std::size_t i : rim) {
+                neighbours(i, width, [&](std::size_t n) {
+                    if (valid(at(n)) || queued[n]) return;
+                    queued[n] = 1;
+                    next.push_back(n);
+                });
+            }
+            rim = std::move(next);
+        }
+        for (std::size_t i = 0; i < pixels; ++i) {
+            if (!valid(at(i))) at(i) = static_cast<float>(sum / static_cast<double>(count));
+        }
+    }
+
+    float fromNeighbours(std::size_t i, std::size_t width) {
+        float largest = 0;
+        double sum = 0;
+        int count = 0;
+        neighbours(i, width, [&](std::size_t n) {
+            if (!valid(at(n))) return;
+            largest = std::max(largest, at(n));
+            sum += at(n);
+            ++count;
+        });
+        return at(i) > 0 ? largest : static_cast<float>(sum / count); // a NaN is not above 0
+    }
+
+    template <class Use>
+    void neighbours(std::size_t i, std::size_t width, Use&& use) {
+        forEachNeighbour(panorama_, static_cast<int>(i % width), static_cast<int>(i / width),
+                         [&](int x, int y) {
+                             use(static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x));
+                         });
+    }
+
+    Panorama& panorama_;
+    int channel_;
+};
+
+} // namespace
+
+Census takeCensus(const Panorama& panorama, int threads) {
+    const Image& image = panorama.image;
+    std::vector<RowCensus> rows(static_cast<std::size_t>(image.height));
+    parallelFor(rows.size(), threads, [&](std::size_t r) {
+        const int y = static_cast<int>(r);
+        double solid_angle = 0;
+        for (int x = 0; x < image.width; ++x) {
+            // A lat-long's row is of one size.
+            if (x == 0 || panorama.layout != Layout::latlong) {
+                solid_angle = texelSolidAngle(panorama.layout, image.width, image.height, x, y);
+            }
+            if (solid_angle > 0) countPixel(rows[r], image.at(x, y), x, y, solid_angle);
+        }
+    });
+    Census census;
+    RowCensus total;
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+        const RowCensus& row = rows[r];
+        merge(census.nan, row.nan, false);
+        merge(census.infinite, row.infinite, false);
+        merge(census.negative, row.negative, true);
+        for (int c = 0; c < 3; ++c) {
+            total.min[c] = std::min(total.min[c], row.min[c]);
+            total.max[c] = std::max(total.max[c], row.max[c]);
+        }
+        total.energy += row.energy;
+        if (row.brightest > total.brightest) {
+            total.brightest = row.brightest;
+            census.sun_at = V2i(row.brightest_x, static_cast<int>(r));
+        }
+    }
+    for (int c = 0; c < 3; ++c) {
+        if (total.min[c] > total.max[c]) continue; // nothing finite
+        census.min[c] = total.min[c];
+        census.max[c] = total.max[c];
+    }
+    census.energy = total.energy;
+    census.mean = total.energy / (4 * kPi);
+    if (std::isfinite(total.brightest)) {
+        const float* sun = image.at(census.sun_at.x, census.sun_at.y);
+        census.sun_radiance = V3d(sun[0], sun[1], sun[2]);
+        census.sun_direction = *texelDirection(panorama.layout, image.width, image.height,
+                                               census.sun_at.x + 0.5, census.sun_at.y + 0.5);
+    }
+    return census;
+}
+
+long repair(std::string_view subject, Panorama& panorama) {
+    std::vector<char> touched(panorama.image.pixels.size() / 3, 0);
+    for (int channel = 0; channel < 3; ++channel) {
+        ChannelRepair(panorama, channel).run(subject, touched);
+    }
+    return std::count(touched.begin(), touched.end(), char(1));
+}
+
+} // namespace ibl
