@@ -48,25 +48,26 @@ struct PrefilterOptions {
 /// The options that a row of kQualities stands for.
 PrefilterOptions optionsFor(Quality quality, int threads = 0);
 
-/// A prefiltered map and what it cost. Errors are relative RMSE, sqrt(sum w |a - b|^2 / sum w |b|^2)
-/// over texels and channels, w the solid angle, against the exact integral.
+/// A prefiltered map and what it cost. Errors are relative RMSE, sqrt(sum w |a - b|^2 / sum w
+/// |b|^2) over texels and channels, w the solid angle, against the exact integral.
 struct PrefilterResult {
     Panorama map;
-    int band_limit = 0;        ///< highest degree l used, 0 when none was
-    int peaks_split = 0;       ///< pixels convolved directly instead of in harmonics
-    double error_bound = 0;    ///< the error is not greater than this
-    double error_estimate = 0; ///< from the decay of the probe's measured spectrum
+    int band_limit = 0;           ///< highest degree l used, 0 when none was
+    int peaks_split = 0;          ///< pixels convolved directly instead of in harmonics
+    double error_bound = 0;       ///< the error is not greater than this
+    double error_estimate = 0;    ///< from the decay of the probe's measured spectrum
     double seconds_analysis = 0;  ///< transform of the probe; the same for all requests
     double seconds_synthesis = 0; ///< harmonics to texels
     double seconds_spatial = 0;   ///< peaks and narrow cores, or the direct sum
 };
 
-/// Convolves the probe with every request's lobe. The probe is a lat-long RGB image of any size from
-/// 1 x 1, pixels constant over their rectangles, finite; negative pixels are allowed. A texel is the
-/// lobe-weighted mean about its centre's direction, so a constant probe L gives L; where the lobe is
-/// narrower than about two texels it is the mean of that over the texel's footprint, and for
-/// roughness 0 the area-filtered probe. Results stand in the order of the requests. Throws Error on
-/// a lobe parameter or a size out of range, or a layout that is not lat-long or made of cube faces.
+/// Convolves the probe with every request's lobe. The probe is a lat-long RGB image of any size
+/// from 1 x 1, pixels constant over their rectangles, finite; negative pixels are allowed. A texel
+/// is the lobe-weighted mean about its centre's direction, so a constant probe L gives L; where the
+/// lobe is narrower than about two texels it is the mean of that over the texel's footprint, and
+/// for roughness 0 the area-filtered probe. Results stand in the order of the requests. Throws
+/// Error on a lobe parameter or a size out of range, or a layout that is not lat-long or made of
+/// cube faces.
 std::vector<PrefilterResult> prefilter(const Image& latlong,
                                        std::span<const PrefilterRequest> requests,
                                        const PrefilterOptions& options);

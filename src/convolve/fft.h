@@ -1,0 +1,34 @@
+// Fourier transforms of any length, eight at a time.
+#pragma once
+
+#include "convolve/simd.h"
+
+#include <complex>
+#include <vector>
+
+namespace ibl {
+
+/// What a transform of length n needs: factors and roots of unity, and for lengths with a prime
+/// factor above 61 Bluestein's convolution of a power-of-two length (Bluestein 1970).
+struct FftPlan {
+    int length = 1;
+    std::vector<int> factors;
+    std::vector<std::complex<double>> roots;          ///< exp(-2 pi i k / length)
+    std::vector<std::complex<double>> chirp;          ///< exp(-i pi k^2 / length), Bluestein only
+    std::vector<std::complex<double>> chirp_spectrum; ///< of the padded conjugate chirp, / padded
+    std::vector<FftPlan> padded;                      ///< one plan, Bluestein only
+};
+
+FftPlan makeFftPlan(int length);
+
+/// Number of ComplexLanes of workspace that `fft` needs besides its data.
+std::size_t fftWorkspace(const FftPlan& plan);
+
+/// Transforms, in place, kLanes interleaved sequences: X_k = sum_j x_j exp(-2 pi i j k / n). Not
+/// normalised. (The inverse is the same with re and im swapped before and after.)
+void fft(const FftPlan& plan, ComplexLanes* data, ComplexLanes* workspace);
+
+/// The smallest length >= n with no prime factor above 5.
+int goodFftLength(int n);
+
+} // namespace ibl

@@ -1,0 +1,66 @@
+// Spherical-harmonic coefficients and the Legendre sums that make and evaluate them.
+//
+// Basis: Y_lm = P_lm(cos theta) exp(i m psi), orthonormal over the sphere, m >= 0 (the fields are
+// real, so -m is the conjugate), no Condon-Shortley sign, psi = 2 pi u growing with the lat-long
+// column. Ring sums run over pairs of rings theta and pi - theta, on which P_lm is even or odd with
+// l - m, in steps of two degrees (Schaeffer 2013, eq. 9-12):
+//
+//     P_(l+2) = [(x^2 - e_(l+1)^2 - e_l^2) P_l - e_l e_(l-1) P_(l-2)] / (e_(l+1) e_(l+2)),
+//     e_l = sqrt((l^2 - m^2) / (4 l^2 - 1)),  x = cos theta.
+//
+// P_mm ~ sin^m theta underflows near the poles, so values carry a power of two beside them until
+// they are large enough to matter.
+#pragma once
+
+#include "convolve/simd.h"
+
+#include <array>
+#include <vector>
+
+namespace ibl {
+
+/// Real and imaginary parts of three channels: re r, im r, re g, im g, re b, im b.
+inline constexpr int kParts = 6;
+using Parts = std::array<double, kParts>;
+
+/// f_lm of an RGB field for 0 <= m <= l <= degree.
+struct Harmonics {
+    int degree = 0;
+    std::vector<Parts> coefficients; ///< m-major: [m][l - m]
+
+    explicit Harmonics(int d = 0)
+        : degree(d), coefficients(static_cast<std::size_t>(d + 1) * (d + 2) / 2) {}
+
+    std::size_t index(int l, int m) const {
+        return static_cast<std::size_t>(m) * (2 * degree + 3 - m) / 2 + (l - m);
+    }
+    Parts& at(int l, int m) { return coefficients[index(l, m)]; }
+    const Parts& at(int l, int m) const { return coefficients[index(l, m)]; }
+};
+
+/// Rings at theta = pi (r + 0.5) / rings; `rings` is a multiple of 2 kLanes, so that the pairs
+/// (r, rings - 1 - r) fill whole vectors.
+struct RingGeometry {
+    int rings = 0;
+    LaneVector<Lanes> x_squared;  ///< cos^2 theta of each pair
+    LaneVector<Lanes> x;          ///< cos theta of the upper ring
+    std::vector<double> log2_sin; ///< log2 sin theta of each pair
+    std::vector<double> sin;      ///< sin theta of each pair
+};
+
+RingGeometry makeRings(int rings);
+
+/// Least number of rings, of those makeRings takes, that holds fields of this degree: more than
+/// degree + 1.
+int ringsFor(int degree);
+
+/// f_lm = sum over rings of weight_r g_m(theta_r) P_lm(theta_r) for one m and l = m .. degree, with
+/// the weights pi / rings * sin theta_r. `rings_of_m` holds kParts x rings values of g_m.
+void legendreAnalysis(const RingGeometry& rings, const double* rings_of_m, int m,
+                      Harmonics& harmonics);
+
+/// g_m(theta_r) = sum over l = m .. degree of k_l f_lm P_lm(theta_r), for one m; `scale` holds k_l.
+void legendreSynthesis(const RingGeometry& rings, const Harmonics& harmonics, const double* scale,
+                       int degree, int m, double* rings_of_m);
+
+} // namespace ibl
