@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <string>
+#include <vector>
 
 namespace ibl {
 namespace {
@@ -24,15 +25,15 @@ void set(float* pixel, const V3d& value) {
 // chi), with Z the angle from the zenith and chi that from the sun. The standard knows no colour:
 // ours goes from blue overhead to pale at the horizon and about the sun.
 constexpr double kA = -1, kB = -0.32, kC = 10, kD = -3, kE = 0.45;
-constexpr double kZenithRadiance = 0.25;
-constexpr std::array<double, 3> kBlue{0.45, 0.95, 2.0}, kPale{1.0, 1.05, 1.1};
+constexpr double kZenithRadiance = 0.15;
+constexpr std::array<double, 3> kBlue{0.45, 0.95, 2.0}, kPale{1.05, 1.05, 1.1};
 // The sun: its true angular radius, and the radiance above the atmosphere of a midday in these
 // units (1e5 times the sky's, as in nature), 40 degrees up and 30 degrees from +Z towards +X.
 constexpr double kSunRadius = 0.2666 * kPi / 180;
 constexpr std::array<double, 3> kSunRadiance{30000, 27500, 23000};
 constexpr double kSunElevation = 40 * kPi / 180, kSunAzimuth = 30 * kPi / 180;
 // The ground: about a fifth of the light that falls on it.
-constexpr std::array<double, 3> kGround{0.17, 0.155, 0.13};
+constexpr std::array<double, 3> kGround{0.13, 0.12, 0.1};
 
 V3d vector(const std::array<double, 3>& v) {
     return {v[0], v[1], v[2]};
@@ -43,15 +44,24 @@ V3d sunDirection() {
             std::cos(kSunElevation) * std::cos(kSunAzimuth)};
 }
 
-V3d skyRadiance(double cos_zenith, double chi) {
-    const double scattering =
-        1 + kC * (std::exp(kD * chi) - std::exp(kD * kPi / 2)) + kE * std::cos(chi) * std::cos(chi);
-    const double gradation = 1 + kA * std::exp(kB / std::max(cos_zenith, 1e-3));
-    const double at_zenith = 1 + kA * std::exp(kB);
-    const double haze = std::max(std::pow(1 - cos_zenith, 4), 0.8 * std::exp(-6 * chi));
-    const V3d colour = vector(kBlue) * (1 - haze) + vector(kPale) * haze;
-    return colour * (kZenithRadiance * scattering * gradation / at_zenith);
-}
+/// The sky along one parallel, as a function of the angle from the sun.
+struct SkyRow {
+    double gradation;
+    double horizon_haze;
+
+    explicit SkyRow(double cos_zenith)
+        : gradation(kZenithRadiance * (1 + kA * std::exp(kB / std::max(cos_zenith, 1e-3))) /
+                    (1 + kA * std::exp(kB))),
+          horizon_haze(std::pow(1 - cos_zenith, 4)) {}
+
+    V3d radiance(double cos_chi) const {
+        const double fading = std::exp(kD * std::acos(std::clamp(cos_chi, -1.0, 1.0)));
+        const double scattering =
+            1 + kC * (fading - std::exp(kD * kPi / 2)) + kE * cos_chi * cos_chi;
+        const double haze = std::max(horizon_haze, fading);
+        return (vector(kBlue) * (1 - haze) + vector(kPale) * haze) * (gradation * scattering);
+    }
+};
 
 /// Adds the disc to the pixels it covers, with the energy of the true disc at any resolution: it is
 /// sampled at equal steps of solid angle (rings of equal area, points at equal angles).
@@ -81,16 +91,24 @@ void addSun(Image& image) {
 /// Rows are as they are at their centres, but for one that the horizon cuts, which is half of each.
 void sky(Image& image, int threads) {
     const V3d sun = sunDirection();
+    std::vector<double> cos_from_sun(static_cast<std::size_t>(image.width));
+    for (int x = 0; x < image.width; ++x) {
+        const double phi = 2 * kPi * (0.5 - (x + 0.5) / image.width);
+        cos_from_sun[static_cast<std::size_t>(x)] = std::cos(phi - kSunAzimuth);
+    }
     parallelFor(static_cast<std::size_t>(image.height), threads, [&](std::size_t row) {
         const int y = static_cast<int>(row);
-        const double up = (2.0 * y + 1 < image.height) ? 1 : (2 * y + 1 == image.height ? 0.5 : 0);
-        const double cos_zenith = std::max(0.0, std::cos(kPi * (y + 0.5) / image.height));
+        const double theta = kPi * (y + 0.5) / image.height;
+        const double cos_zenith = std::max(0.0, std::cos(theta));
+        const double along = std::cos(kSunElevation) * std::sin(theta), up = sun.y * cos_zenith;
+        const bool cut = 2 * y + 1 == image.height, ground = 2 * y + 1 > image.height;
+        const SkyRow sky_row(cos_zenith);
         for (int x = 0; x < image.width; ++x) {
-            V3d value = vector(kGround) * (1 - up);
-            if (up > 0) {
-                const V3d d = latlongDirection((x + 0.5) / image.width, (y + 0.5) / image.height);
-                const double chi = 2 * std::asin(std::min(1.0, 0.5 * (d - sun).length()));
-                value += skyRadiance(cos_zenith, chi) * up;
+            V3d value = vector(kGround);
+            if (!ground) {
+                const double cos_chi = along * cos_from_sun[static_cast<std::size_t>(x)] + up;
+                const V3d above = sky_row.radiance(cos_chi);
+                value = cut ? (above + value) * 0.5 : above;
             }
             set(image.at(x, y), value);
         }
@@ -148,17 +166,27 @@ V3d compassRadiance(const V3d& direction) {
 }
 
 void compass(Image& image, int threads) {
-    constexpr int kSamples = 3; // across a pixel: enough for letters without steps
-    parallelFor(static_cast<std::size_t>(image.height), threads, [&](std::size_t row) {
-        const int y = static_cast<int>(row);
-        for (int x = 0; x < image.width; ++x) {
-            V3d sum(0);
-            for (int k = 0; k < kSamples * kSamples; ++k) {
-                const double u = x + (k % kSamples + 0.5) / kSamples;
-                const double v = y + (k / kSamples + 0.5) / kSamples;
-                sum += compassRadiance(latlongDirection(u / image.width, v / image.height));
+    constexpr int kSamples = 2; // across a pixel: enough to soften steps
+    std::vector<V2d> around(static_cast<std::size_t>(image.width * kSamples));
+    for (std::size_t k = 0; k < around.size(); ++k) {
+        const double phi =
+            2 * kPi * (0.5 - (static_cast<double>(k) + 0.5) / (image.width * kSamples));
+        around[k] = V2d(std::sin(phi), std::cos(phi));
+    }
+    parallelFor(static_cast<std::size_t>(image.height), threads, [&](std::size_t y) {
+        std::vector<V3d> sums(static_cast<std::size_t>(image.width), V3d(0));
+        for (int k = 0; k < kSamples; ++k) {
+            const double theta =
+                kPi * (static_cast<double>(y) + (k + 0.5) / kSamples) / image.height;
+            const double sine = std::sin(theta), cosine = std::cos(theta);
+            for (std::size_t x = 0; x < around.size(); ++x) {
+                sums[x / kSamples] +=
+                    compassRadiance({sine * around[x].x, cosine, sine * around[x].y});
             }
-            set(image.at(x, y), sum / (kSamples * kSamples));
+        }
+        for (std::size_t x = 0; x < sums.size(); ++x) {
+            set(image.at(static_cast<int>(x), static_cast<int>(y)),
+                sums[x] / (kSamples * kSamples));
         }
     });
 }
