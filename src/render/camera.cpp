@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -51,6 +52,28 @@ CameraRays cameraRays(const Camera& camera, int width, int height) {
     const V3d up = unit_right.cross(forward);
     const double pixel = 2 * std::tan(0.5 * camera.fov * kRadians) / height;
     return {camera.eye, forward, unit_right * pixel, up * -pixel, {0.5 * width, 0.5 * height}};
+}
+
+PixelRect unitSphereRect(const CameraRays& rays, int width, int height) {
+    const V3d centre = -rays.eye;
+    const double z = centre.dot(rays.forward);
+    if (z < -1) return {{0, 0}, {0, 0}};
+    PixelRect rect{{0, 0}, {width, height}};
+    if (z * z <= 1.0001) return rect;
+    // Along one axis of the picture: slopes t whose plane through the eye touches the sphere,
+    // (x - t z)^2 = 1 + t^2, so t = (x z -+ sqrt(x^2 + z^2 - 1)) / (z^2 - 1).
+    for (int axis = 0; axis < 2; ++axis) {
+        const V3d& step = axis == 0 ? rays.step_x : rays.step_y;
+        const double pixel = step.length();
+        const double x = centre.dot(step) / pixel;
+        const double root = std::sqrt(x * x + z * z - 1), scale = (z * z - 1) * pixel;
+        const double low = rays.centre[axis] + (x * z - root) / scale;
+        const double high = rays.centre[axis] + (x * z + root) / scale;
+        const int limit = rect.max[axis];
+        rect.min[axis] = static_cast<int>(std::clamp(std::floor(low) - 1, 0.0, double(limit)));
+        rect.max[axis] = static_cast<int>(std::clamp(std::ceil(high) + 1, 0.0, double(limit)));
+    }
+    return rect;
 }
 
 } // namespace ibl

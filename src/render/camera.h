@@ -6,6 +6,7 @@
 namespace ibl {
 
 using Imath::V2d;
+using Imath::V2i;
 using Imath::V3d;
 
 /// Looks from `eye` to `target`, `up` upwards in the picture.
@@ -35,6 +36,16 @@ struct CameraRays {
         return forward + step_x * (x - centre.x) + step_y * (y - centre.y);
     }
 };
+
+/// A rectangle of a frame, in pixels; empty when max <= min.
+struct PixelRect {
+    V2i min;
+    V2i max;
+};
+
+/// The pixels of the frame that the unit sphere at the origin may touch, samples anywhere in a pixel
+/// included: the whole frame when the eye's plane cuts the sphere, none when it lies behind.
+PixelRect unitSphereRect(const CameraRays& rays, int width, int height);
 
 /// Rays of a width x height frame of square pixels.
 /// Throws Error (usage) when the camera has no picture: eye at target, up along the view or zero,

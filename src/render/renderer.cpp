@@ -24,8 +24,9 @@ constexpr std::array<ShaderInfo, 3> kShaders{{
     {Shader::mirrorDiffuse, "mirror-diffuse", "mirror_diffuse.frag", true, true},
 }};
 
-// A frame is drawn in tiles, so that memory beside the picture itself does not grow with it.
-constexpr int kTileWidth = 1024, kTileHeight = 512;
+// A frame is drawn in tiles, so that memory beside the picture itself does not grow with it. Every
+// tile draws the whole mesh once a sample, so they are no smaller than they must be.
+constexpr int kTileWidth = 2048, kTileHeight = 2048;
 
 Error usage(const std::string& problem) {
     return {ExitCode::usage, "render: " + problem};
@@ -164,6 +165,8 @@ struct Renderer::State {
     V2i tileSize() const;
     void drawFullscreen(const Program& program) const;
     void drawSample(const CameraRays& rays, const V2i& tile, const V2d& jitter) const;
+    void drawSphere(const CameraRays& rays, const V2i& tile) const;
+    void drawMesh(const CameraRays& rays, const V2d& jitter) const;
     void drawTile(const CameraRays& rays, const V2i& tile) const;
     Program resolveProgram(const Display& display, bool to_bytes) const;
     template <class T>
@@ -220,7 +223,7 @@ V2i Renderer::State::tileSize() const {
 
 void Renderer::State::makeTargets() {
     const V2i size = tileSize();
-    if (mesh) depth = makeRenderbuffer(GL_DEPTH_COMPONENT32F, size.x, size.y);
+    depth = makeRenderbuffer(GL_DEPTH_COMPONENT32F, size.x, size.y);
     sample = makeTexture(GL_TEXTURE_2D, GL_RGBA32F, size.x, size.y);
     to_sample = makeFramebuffer(sample, depth.id());
     if (options.samples > 1) {
@@ -238,7 +241,32 @@ void Renderer::State::drawFullscreen(const Program& program) const {
     glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
-// One sample a pixel of a tile. `jitter` is the sample's place from the pixel's centre.
+void Renderer::State::drawSphere(const CameraRays& rays, const V2i& tile) const {
+    setUniform(surface, "eye", rays.eye);
+    setUniform(surface, "moment_forward", rays.eye.cross(rays.forward));
+    setUniform(surface, "moment_x", rays.eye.cross(rays.step_x));
+    setUniform(surface, "moment_y", rays.eye.cross(rays.step_y));
+    const PixelRect rect = unitSphereRect(rays, options.width, options.height);
+    glScissor(rect.min.x - tile.x, rect.min.y - tile.y, rect.max.x - rect.min.x,
+              rect.max.y - rect.min.y);
+    glEnable(GL_SCISSOR_TEST);
+    glDepthRange(0, 0); // whatever the triangle's depth is: the background stays behind
+    drawFullscreen(surface);
+    glDepthRange(0, 1);
+    glDisable(GL_SCISSOR_TEST);
+}
+
+void Renderer::State::drawMesh(const CameraRays& rays, const V2d& jitter) const {
+    const auto clip_from_world = clipFromWorld(rays, box, jitter);
+    if (!clip_from_world) return;
+    setUniform(surface, "clip_from_world", *clip_from_world);
+    glUseProgram(surface.id());
+    glBindVertexArray(mesh->array.id());
+    glDrawElements(GL_TRIANGLES, mesh->count, GL_UNSIGNED_INT, nullptr);
+}
+
+// One sample a pixel of a tile. `jitter` is the sample's place from the pixel's centre. The
+// background comes last, at the far plane, so that it is looked up only where it is seen.
 void Renderer::State::drawSample(const CameraRays& rays, const V2i& tile, const V2d& jitter) const {
     glBindFramebuffer(GL_FRAMEBUFFER, to_sample.id());
     glViewport(-tile.x, -tile.y, options.width, options.height);
@@ -249,33 +277,25 @@ void Renderer::State::drawSample(const CameraRays& rays, const V2i& tile, const 
         setUniform(program, "step_x", rays.step_x);
         setUniform(program, "step_y", rays.step_y);
     };
-    if (background) {
-        setView(background);
-        setUniform(background, "tile_origin", tile);
-        drawFullscreen(background);
-    } else {
+    if (!background) {
         const std::array<float, 4> color{clear_color.x, clear_color.y, clear_color.z,
                                          opaque ? 1.f : 0.f};
         glClearBufferfv(GL_COLOR, 0, color.data());
     }
-    setView(surface);
-    if (!mesh) {
-        setUniform(surface, "eye", rays.eye);
-        setUniform(surface, "moment_forward", rays.eye.cross(rays.forward));
-        setUniform(surface, "moment_x", rays.eye.cross(rays.step_x));
-        setUniform(surface, "moment_y", rays.eye.cross(rays.step_y));
-        drawFullscreen(surface);
-        return;
-    }
-    const auto clip_from_world = clipFromWorld(rays, box, jitter);
-    if (!clip_from_world) return;
-    setUniform(surface, "clip_from_world", *clip_from_world);
     const float far_depth = 1;
     glClearBufferfv(GL_DEPTH, 0, &far_depth);
-    glUseProgram(surface.id());
-    glBindVertexArray(mesh->array.id());
     glEnable(GL_DEPTH_TEST);
-    glDrawElements(GL_TRIANGLES, mesh->count, GL_UNSIGNED_INT, nullptr);
+    setView(surface);
+    if (mesh) {
+        drawMesh(rays, jitter);
+    } else {
+        drawSphere(rays, tile);
+    }
+    if (background) {
+        setView(background);
+        setUniform(background, "tile_origin", tile);
+        drawFullscreen(background);
+    }
     glDisable(GL_DEPTH_TEST);
 }
 
@@ -336,7 +356,8 @@ void Renderer::State::drawFrame(const Camera& camera, const Display& display, T*
         to_target = makeFramebuffer(target);
     }
     glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
-    glFrontFace(GL_CW); // counter-clockwise, in a frame whose y is down
+    glFrontFace(GL_CW);     // counter-clockwise, in a frame whose y is down
+    glDepthFunc(GL_LEQUAL); // the background stands at the far plane itself
     glBlendFunc(GL_ONE, GL_ONE);
     glBindTextureUnit(1, diffuse.texture.id());
     glBindTextureUnit(2, image.id());
