@@ -16,6 +16,11 @@
 namespace ibl {
 namespace {
 
+/// Measured on a 1024x512 probe of floats (6.2 MB raw), milliseconds of CPU and MB: zip at level 1
+/// 84, 2.47; 2 (same cost on smaller ones) 104, 2.40; 4, OpenEXR's default, 116, 2.25; 6 365, 2.17;
+/// zips at 1 122, 3.06; piz 44, 2.27; none 8, 6.15. On faces of 256 texels zip at 2 and piz take 9
+/// and 9 ms for 268 and 300 KB, on flat studio light zip is half as large as piz: hence zip.
+constexpr int kZipLevel = 2;
 constexpr float kLargestHalf = 65504;
 constexpr std::array<const char*, 4> kChannels = {"R", "G", "B", "A"};
 
@@ -52,6 +57,7 @@ Imf::Compression compressionNamed(const std::string& name, const std::string& pa
 Imf::Header makeHeader(const Image& image, const WriteOptions& options, const std::string& path) {
     Imf::Header header(image.width, image.height);
     header.compression() = compressionNamed(options.compression, path);
+    header.zipCompressionLevel() = kZipLevel;
     const Imf::PixelType type = options.type == PixelType::half ? Imf::HALF : Imf::FLOAT;
     for (int c = 0; c < image.channels; ++c)
         header.channels().insert(kChannels[c], Imf::Channel(type));

@@ -7,6 +7,7 @@
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <exception>
 
@@ -54,13 +55,22 @@ bool isEncoded(const ImageSpec& spec) {
     return !OIIO::Strutil::iequals(spec.get_string_attribute("oiio:ColorSpace"), "linear");
 }
 
-void toLinear(Image& image, bool encoded, bool unassociated) {
+/// Linear light, premultiplied. Of 8-bit files only 256 values can come, which saves the powers.
+void toLinear(Image& image, const ImageSpec& spec) {
+    const bool encoded = isEncoded(spec), bytes = spec.format == TypeDesc::UINT8;
+    const bool premultiply =
+        image.channels == 4 && spec.get_int_attribute("oiio:UnassociatedAlpha") != 0;
+    std::array<float, 256> table{};
+    for (std::size_t i = 0; i < 256; ++i) table[i] = srgbToLinear(static_cast<float>(i) / 255);
     const std::size_t pixels = static_cast<std::size_t>(image.width) * image.height;
     float* p = image.pixels.data();
     for (std::size_t i = 0; i < pixels; ++i, p += image.channels) {
         for (int c = 0; c < 3; ++c) {
-            if (encoded) p[c] = srgbToLinear(p[c]);
-            if (unassociated && image.channels == 4) p[c] *= p[3];
+            if (encoded) {
+                p[c] = bytes ? table[static_cast<std::size_t>(p[c] * 255 + 0.5F) & 255]
+                             : srgbToLinear(p[c]);
+            }
+            if (premultiply) p[c] *= p[3];
         }
     }
 }
@@ -111,7 +121,7 @@ ImageFile read(const std::string& path, const ReadOptions& options) {
 
     ImageFile file;
     file.image = readPixels(*in, spec, channels, alpha);
-    toLinear(file.image, encoded, spec.get_int_attribute("oiio:UnassociatedAlpha") != 0);
+    toLinear(file.image, spec);
     file.format = in->format_name();
     file.compression = spec.get_string_attribute("compression");
     file.pixel_type = spec.format.c_str();
@@ -160,6 +170,7 @@ WriteLosses write(const std::string& path, const Image& image, const std::string
     ImageSpec spec(image.width, image.height, channels, type);
     spec.attribute("oiio:ColorSpace", tiff ? "Linear" : "sRGB");
     if (tiff) spec.attribute("compression", "zip");
+    spec.attribute("DateTime", ""); // or it would be now
     if (!out->open(path, spec)) {
         throw std::runtime_error("cannot be written (" + firstLine(out->geterror()) + ")");
     }

@@ -3,9 +3,8 @@
 //
 // A pixel is four bytes: mantissas of R, G and B and a common exponent e,
 //     value = mantissa * 2^(e - 136),  e = 0 is black.
-// Some readers add a half to the mantissa; Radiance's own writer truncates, which makes that the
-// better estimate for its files, but it is no inverse of any writer that rounds, this one included,
-// and black next to black would glow.
+// Radiance's own reader adds a half to the mantissa, since its writer truncates; but most writers
+// round, this one included, and for those that would make every value too bright.
 #pragma once
 
 #include "image/image.h"

@@ -1,0 +1,132 @@
+#include "image_files.h"
+
+#include "image/png.h"
+#include "image/srgb.h"
+
+namespace ibl::test {
+namespace {
+
+class Png : public ImageFiles {};
+
+double srgbDecoded(double v) {
+    return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+}
+
+TEST(Srgb, RoundsToTheNearestCodeAtEveryBoundary) {
+    for (int code = 1; code < 256; ++code) {
+        const double boundary = srgbDecoded((code - 0.5) / 255);
+        const float above = static_cast<float>(boundary * 1.000001);
+        const float below = static_cast<float>(boundary * 0.999999);
+        EXPECT_EQ(linearToSrgb8(above), code);
+        EXPECT_EQ(linearToSrgb8(below), code - 1);
+    }
+}
+
+TEST(Srgb, InvertsAndClamps) {
+    for (int code = 0; code < 256; ++code) {
+        const float linear = srgbToLinear(static_cast<float>(code) / 255);
+        EXPECT_EQ(linearToSrgb8(linear), code);
+        EXPECT_NEAR(linearToSrgb(linear), static_cast<float>(code) / 255, 1e-6F);
+    }
+    EXPECT_EQ(linearToSrgb8(-1), 0);
+    EXPECT_EQ(linearToSrgb8(NAN), 0);
+    EXPECT_EQ(linearToSrgb8(1e-30F), 0);
+    EXPECT_EQ(linearToSrgb8(1.5F), 255);
+    EXPECT_EQ(linearToSrgb8(INFINITY), 255);
+}
+
+TEST_F(Png, BytesRoundTripThroughAnOutsideReader) {
+    for (const int channels : {3, 4}) {
+        for (const int width : {1, 3, 500}) {
+            const int height = width == 500 ? 700 : 2; // more than one strip
+            std::vector<std::uint8_t> bytes(static_cast<std::size_t>(width) * height * channels);
+            std::uint32_t state = 1;
+            for (auto& b : bytes)
+                b = static_cast<std::uint8_t>((state = state * 1664525 + 1013904223) >> 24);
+            OutputSet outputs;
+            writePng8(outputs.add(path("a.png")), bytes, width, height, channels);
+            outputs.commit();
+            run("oiiotool -i:unpremult=1 " + path("a.png") + " -d uint8 -o " + path("a.ppm"));
+            const ImageFile file = readImage(path("a.png"), {"", true});
+            ASSERT_EQ(file.image.channels, channels);
+            for (std::size_t i = 0; i < bytes.size(); i += static_cast<std::size_t>(channels)) {
+                const float alpha = channels == 4 ? static_cast<float>(bytes[i + 3]) / 255 : 1;
+                for (std::size_t c = 0; c < 3; ++c) {
+                    ASSERT_NEAR(file.image.pixels[i + c], srgbDecoded(bytes[i + c] / 255.0) * alpha,
+                                1e-6);
+                }
+            }
+            if (channels == 3) {
+                const std::string ppm = readBytes(path("a.ppm"));
+                EXPECT_EQ(ppm.substr(ppm.size() - bytes.size()),
+                          std::string(bytes.begin(), bytes.end()));
+            }
+        }
+    }
+}
+
+TEST_F(Png, LinearFloatsAreEncodedClampedAndCounted) {
+    Image image(2, 2, 3);
+    const float values[] = {0, 0.5F, 1, -1, 2, NAN, 0.18F, 0.2F, 0.9F, 0.001F, 1e-9F, 1};
+    std::copy(std::begin(values), std::end(values), image.pixels.begin());
+    OutputSet outputs;
+    const WriteLosses losses = writeImage(outputs, path("a.png"), image);
+    outputs.commit();
+    EXPECT_EQ(losses.above, 1U);
+    EXPECT_EQ(losses.below, 1U);
+    EXPECT_EQ(losses.not_number, 1U);
+    const ImageFile file = readImage(path("a.png"));
+    for (std::size_t i = 0; i < 12; ++i) {
+        EXPECT_FLOAT_EQ(file.image.pixels[i],
+                        srgbToLinear(static_cast<float>(linearToSrgb8(values[i])) / 255));
+    }
+    EXPECT_EQ(file.format, "png");
+    EXPECT_EQ(file.pixel_type, "uint8");
+    EXPECT_TRUE(anyContains(file.notes, "display-referred"));
+    EXPECT_TRUE(contains(readBytes(path("a.png")), "sRGB"));
+    EXPECT_TRUE(anyContains(describeLosses(losses, "a.png"), "1 value above 1 was written as 1"));
+}
+
+TEST_F(Png, AlphaIsPremultipliedInMemoryAndNotInTheFile) {
+    Image image(1, 2, 4);
+    const float values[] = {0.25F, 0.125F, 0, 0.5F, 0, 0, 0, 0};
+    std::copy(std::begin(values), std::end(values), image.pixels.begin());
+    writeOne(path("a.png"), image);
+    const Image back = readImage(path("a.png"), {"", true}).image;
+    ASSERT_EQ(back.channels, 4);
+    EXPECT_NEAR(back.at(0, 0)[0], 0.25F, 0.003F);
+    EXPECT_NEAR(back.at(0, 0)[1], 0.125F, 0.002F);
+    EXPECT_NEAR(back.at(0, 0)[3], 128.0F / 255, 1e-6F);
+    EXPECT_EQ(back.at(0, 1)[3], 0);
+    // Without alpha the stored colour is read as it is.
+    EXPECT_NEAR(readImage(path("a.png")).image.at(0, 0)[0], 0.5F, 0.003F);
+}
+
+TEST_F(Png, ReadsOtherPeoplesTypes) {
+    // Associated 0.1 0.2 0.05 with alpha 0.25, which the file holds divided out: 0.4 0.8 0.2.
+    for (const char* name : {"alpha8.png", "alpha16.png"}) {
+        const bool deep = std::string(name) == "alpha16.png";
+        const ImageFile file = readImage(testdata(name), {"", true});
+        EXPECT_EQ(file.pixel_type, deep ? "uint16" : "uint8");
+        EXPECT_NEAR(file.image.at(3, 3)[3], 0.25F, deep ? 1e-5F : 0.002F);
+        EXPECT_NEAR(file.image.at(3, 3)[0], 0.25 * srgbDecoded(0.4), deep ? 1e-5F : 0.002F);
+        EXPECT_NEAR(file.image.at(3, 3)[1], 0.25 * srgbDecoded(0.8), deep ? 1e-5F : 0.004F);
+        EXPECT_TRUE(anyContains(readImage(testdata(name)).notes, "alpha"));
+    }
+    const Image grey = readImage(testdata("grey.png")).image;
+    ASSERT_EQ(grey.channels, 3);
+    EXPECT_NEAR(grey.at(5, 5)[2], srgbDecoded(128.0 / 255), 1e-6);
+}
+
+TEST_F(Png, SameBytesForAnyThreads) {
+    const Image image = testPixels(600, 700);
+    WriteOptions one, many;
+    one.threads = 1;
+    many.threads = 5;
+    writeOne(path("one.png"), image, one);
+    writeOne(path("many.png"), image, many);
+    EXPECT_EQ(readBytes(path("one.png")), readBytes(path("many.png")));
+}
+
+} // namespace
+} // namespace ibl::test
