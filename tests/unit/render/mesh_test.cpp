@@ -1,0 +1,161 @@
+#include "render/mesh.h"
+
+#include "render/builtin_objects.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+namespace ibl {
+namespace {
+
+using Point = std::tuple<int, int, int>;
+
+// Vertices of flat faces and of patches are repeated: what is at one place counts as one.
+Point place(const V3f& p) {
+    const auto snap = [](float x) { return static_cast<int>(std::lround(x * 1e5)); };
+    return {snap(p.x), snap(p.y), snap(p.z)};
+}
+
+// How often each edge is walked, less how often it is walked the other way; and whether any is
+// walked twice in one direction.
+struct Edges {
+    std::map<std::pair<Point, Point>, int> walks;
+
+    explicit Edges(const Mesh& mesh) {
+        for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                const Point a = place(mesh.positions[mesh.indices[i + k]]);
+                const Point b = place(mesh.positions[mesh.indices[i + (k + 1) % 3]]);
+                ++walks[{a, b}];
+            }
+        }
+    }
+    bool consistent() const {
+        for (const auto& [edge, count] : walks) {
+            if (count != 1) return false;
+        }
+        return true;
+    }
+    std::size_t open() const {
+        std::size_t count = 0;
+        for (const auto& [edge, walked] : walks)
+            count += !walks.count({edge.second, edge.first});
+        return count;
+    }
+};
+
+double volume(const Mesh& mesh) {
+    double sum = 0;
+    for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
+        const V3d a(mesh.positions[mesh.indices[i]]), b(mesh.positions[mesh.indices[i + 1]]),
+            c(mesh.positions[mesh.indices[i + 2]]);
+        sum += a.dot(b.cross(c)) / 6;
+    }
+    return sum;
+}
+
+Mesh builtinMesh(std::string_view name) {
+    return *builtinObject(name)->mesh;
+}
+
+TEST(Mesh, EveryNameIsAnObjectAndOnlyTheSphereIsAnalytic) {
+    for (const std::string_view name : builtinObjectNames()) {
+        const auto object = builtinObject(name);
+        ASSERT_TRUE(object) << name;
+        EXPECT_EQ(object->mesh.has_value(), name != "sphere");
+        const Box3f box = bounds(*object);
+        for (int axis = 0; axis < 3; ++axis) {
+            EXPECT_NEAR(box.min[axis], -box.max[axis], 1e-5) << name; // centred
+        }
+    }
+    EXPECT_FALSE(builtinObject("sphere.obj"));
+}
+
+TEST(Mesh, NormalsAreUnitAndOnTheTrianglesOuterSide) {
+    for (const char* name : {"cube", "dodecahedron", "torus", "teapot"}) {
+        const Mesh mesh = builtinMesh(name);
+        ASSERT_EQ(mesh.positions.size(), mesh.normals.size());
+        for (const V3f& n : mesh.normals)
+            ASSERT_NEAR(n.length(), 1, 1e-6) << name;
+        double farthest = 0;
+        for (const V3f& p : mesh.positions)
+            farthest = std::max<double>(farthest, p.length());
+        EXPECT_NEAR(farthest, 1, 1e-6) << name;
+        for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
+            std::array<V3d, 3> p, n;
+            for (std::size_t k = 0; k < 3; ++k) {
+                p[k] = V3d(mesh.positions[mesh.indices[i + k]]);
+                n[k] = V3d(mesh.normals[mesh.indices[i + k]]);
+            }
+            const V3d face = (p[1] - p[0]).cross(p[2] - p[0]).normalized();
+            // The teapot's sharpest bends, at spout and knob, turn by up to 50 degrees a triangle.
+            for (const V3d& normal : n)
+                ASSERT_GT(face.dot(normal), 0.6) << name << " " << p[0];
+        }
+    }
+}
+
+TEST(Mesh, SolidsAreClosedAndConsistentlyWound) {
+    const std::map<std::string, double> volumes{
+        {"cube", std::pow(2 / std::sqrt(3.0), 3)},
+        {"dodecahedron", 2.785163863},          // of circumradius 1
+        {"torus", 2 * M_PI * M_PI * 0.7 * 0.09} // less what the chords cut off
+    };
+    for (const auto& [name, expected] : volumes) {
+        const Mesh mesh = builtinMesh(name);
+        const Edges edges(mesh);
+        EXPECT_TRUE(edges.consistent()) << name;
+        EXPECT_EQ(edges.open(), 0u) << name;
+        EXPECT_NEAR(volume(mesh) / expected, 1, name == "torus" ? 2e-3 : 1e-6) << name;
+    }
+}
+
+TEST(Mesh, TorusNormalsAreExact) {
+    const Mesh mesh = makeTorus();
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+        const V3d p(mesh.positions[i]);
+        const V3d ring = V3d(p.x, p.y, 0).normalized() * 0.7;
+        ASSERT_LT(((p - ring) / 0.3 - V3d(mesh.normals[i])).length(), 1e-6);
+    }
+}
+
+TEST(Mesh, DodecahedronHasTwelveFlatPentagons) {
+    const Mesh mesh = makeDodecahedron();
+    EXPECT_EQ(mesh.positions.size(), 60u);
+    EXPECT_EQ(mesh.indices.size(), 12u * 3 * 3);
+    const double inradius = 0.794654472; // of circumradius 1
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+        ASSERT_NEAR(mesh.positions[i].dot(mesh.normals[i]), inradius, 1e-6);
+    }
+}
+
+TEST(Mesh, TeapotIsOpenOnlyWhereNewellsIs) {
+    const Mesh mesh = makeTeapot();
+    const Edges edges(mesh);
+    EXPECT_TRUE(edges.consistent());
+    // 24 segments a patch: the lid's and the rim's circle (4 patches each), and both ends of handle
+    // and spout (2 patches each).
+    EXPECT_EQ(edges.open(), 24u * (4 + 4 + 2 * 2 + 2 * 2));
+    // Tips: knob and bottom look along the axis.
+    int up = 0, down = 0;
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+        const V3f &p = mesh.positions[i], &n = mesh.normals[i];
+        ASSERT_TRUE(std::isfinite(n.x + n.y + n.z));
+        up += n == V3f(0, 1, 0) && p.y > 0;
+        down += n == V3f(0, -1, 0) && p.y < 0;
+    }
+    EXPECT_GE(up, 4);
+    EXPECT_GE(down, 4);
+    // Normals of patches that meet agree, so that no seam shows: their shared vertices differ by
+    // less than a degree except where the pot has creases (rim of the lid, handle's and spout's
+    // roots).
+    const Box3f box = bounds({mesh});
+    EXPECT_GT(box.max.x, box.max.y); // spout towards +X, wider than high
+}
+
+} // namespace
+} // namespace ibl
