@@ -66,15 +66,16 @@ struct SkyRow {
 /// Adds the disc to the pixels it covers, with the energy of the true disc at any resolution: it is
 /// sampled at equal steps of solid angle (rings of equal area, points at equal angles).
 void addSun(Image& image) {
-    constexpr int kRings = 32, kPoints = 128;
+    const int rings = 16 + static_cast<int>(16 * kSunRadius / (kPi / image.height));
+    const int points = 4 * rings;
     const V3d sun = sunDirection();
     const V3d right = V3d(0, 1, 0).cross(sun).normalized(), up = sun.cross(right);
     const double solid_angle = 4 * kPi * std::pow(std::sin(0.5 * kSunRadius), 2);
-    const V3d share = vector(kSunRadiance) * (solid_angle / (kRings * kPoints));
-    for (int ring = 0; ring < kRings; ++ring) {
-        const double radius = kSunRadius * std::sqrt((ring + 0.5) / kRings);
-        for (int point = 0; point < kPoints; ++point) {
-            const double angle = 2 * kPi * (point + 0.5 * (ring % 2)) / kPoints;
+    const V3d share = vector(kSunRadiance) * (solid_angle / (rings * points));
+    for (int ring = 0; ring < rings; ++ring) {
+        const double radius = kSunRadius * std::sqrt((ring + 0.5) / rings);
+        for (int point = 0; point < points; ++point) {
+            const double angle = 2 * kPi * (point + 0.5 * (ring % 2)) / points;
             const V3d d = sun * std::cos(radius) +
                           (right * std::cos(angle) + up * std::sin(angle)) * std::sin(radius);
             const V2d p = latlongPoint(d);

@@ -35,9 +35,8 @@ TEST_P(Overlaps, PartitionTexelsAndPixels) {
                     sum += area;
                     pixels[static_cast<std::size_t>(y) * grid.columns + x] += area;
                 });
-                const double exact =
-                    cubeRectangleSolidAngle(cube.lines[i], cube.lines[i + 1], cube.lines[j],
-                                            cube.lines[j + 1]);
+                const double exact = cubeRectangleSolidAngle(cube.lines[i], cube.lines[i + 1],
+                                                             cube.lines[j], cube.lines[j + 1]);
                 ASSERT_NEAR(sum, exact, 1e-11 * exact + 2e-15) << face << " " << i << " " << j;
             }
         }
