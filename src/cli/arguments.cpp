@@ -1,5 +1,7 @@
 #include "cli/arguments.h"
 
+#include "core/error.h"
+
 #include <string>
 #include <vector>
 
@@ -111,6 +113,10 @@ CLI::Option* addTriple(CLI::App& app, const std::string& names, Imath::V3d& valu
 }
 
 WriteOptions writeOptions(const ImageOutputOptions& output, const CommonOptions& common) {
+    if (output.output == "-" && output.format.empty()) {
+        throw Error(ExitCode::usage, "-: standard output has no extension; say the format with "
+                                     "--format");
+    }
     WriteOptions options;
     options.type = output.type;
     options.compression = output.compression;

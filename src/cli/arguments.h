@@ -58,6 +58,7 @@ constexpr int kMaxSize = 16384;
 CLI::Option* addTriple(CLI::App& app, const std::string& names, Imath::V3d& value,
                        const std::string& help, const std::string& type_name = "X,Y,Z");
 
+/// How to write the output. Throws Error (usage) for standard output without a format.
 WriteOptions writeOptions(const ImageOutputOptions& output, const CommonOptions& common);
 
 } // namespace ibl

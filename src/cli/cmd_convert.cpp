@@ -28,13 +28,12 @@ int matchingSize(const Panorama& source, Layout to) {
 
 void runConvert(const ConvertOptions& options) {
     Session session("convert", options.common);
+    const WriteOptions how = writeOptions(options.output, options.common);
     const Panorama source = session.readProbe(options.probe);
     const int size = options.size.value_or(matchingSize(source, options.to));
     const Panorama result = session.stage(
         "resample", [&] { return resample(source, options.to, size, session.threads()); });
-    session.stage("write", [&] {
-        session.write(options.output.output, result, writeOptions(options.output, options.common));
-    });
+    session.stage("write", [&] { session.write(options.output.output, result, how); });
     session.results() = {{"layout", layoutName(options.to)}, {"size", size}};
     session.finish();
 }

@@ -19,15 +19,13 @@ struct DiffuseOptions {
 
 void runDiffuse(const DiffuseOptions& options) {
     Session session("diffuse", options.common);
+    const WriteOptions how = writeOptions(options.output, options.common);
     const Image latlong = latlongOf(session.readProbe(options.probe), session.threads());
     const bool is_latlong = options.to == Layout::latlong;
     const PrefilterRequest request{
         {Kernel::lambert, 0}, options.to, options.size.value_or(is_latlong ? 128 : 64)};
     const auto results = runPrefilter(session, latlong, {&request, 1}, options.quality);
-    session.stage("write", [&] {
-        session.write(options.output.output, results[0].map,
-                      writeOptions(options.output, options.common));
-    });
+    session.stage("write", [&] { session.write(options.output.output, results[0].map, how); });
     session.finish();
 }
 

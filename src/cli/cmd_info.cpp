@@ -39,12 +39,12 @@ Json jsonOf(const BadPixels& bad) {
 Json describe(const InfoOptions& options, const ProbeFile& file, const Census& census) {
     Json json;
     json["source"] = options.probe.input;
-    json["format"] = file.details.format;
-    json["compression"] = file.details.compression;
-    json["pixel_type"] = file.details.pixel_type;
-    json["layers"] = file.details.layers;
-    json["exposure"] = file.details.exposure;
-    json["colour_correction"] = jsonOf(file.details.colour_correction);
+    json["format"] = file.metadata.format;
+    json["compression"] = file.metadata.compression;
+    json["pixel_type"] = file.metadata.pixel_type;
+    json["layers"] = file.metadata.layers;
+    json["exposure"] = file.metadata.exposure;
+    json["colour_correction"] = jsonOf(file.metadata.colour_correction);
     json["layout"] = layoutName(file.panorama.layout);
     json["size"] = {file.panorama.image.width, file.panorama.image.height};
     json["minimum"] = jsonOf(census.min);
@@ -81,22 +81,23 @@ void line(const char* name, const std::string& value) {
 }
 
 void print(const InfoOptions& options, const ProbeFile& file, const Census& census) {
-    const ImageFile& details = file.details;
+    const ImageFile& metadata = file.metadata;
     const Image& image = file.panorama.image;
-    std::string format = details.format;
-    for (const std::string& part : {details.pixel_type, details.compression}) {
+    std::string format = metadata.format;
+    for (const std::string& part : {metadata.pixel_type, metadata.compression}) {
         if (!part.empty()) format += ", " + part;
     }
     std::string layers;
-    for (const std::string& name : details.layers)
+    for (const std::string& name : metadata.layers)
         layers += (layers.empty() ? "" : " ") + name;
     const V2i at = census.sun_at;
     line("source", options.probe.input);
     line("format", format);
     if (!layers.empty()) line("layers", layers);
-    if (details.exposure != 1) line("exposure", std::to_string(details.exposure) + ", divided out");
-    if (details.colour_correction != V3d(1)) {
-        line("colour corr.", triple(details.colour_correction) + ", divided out");
+    if (metadata.exposure != 1)
+        line("exposure", std::to_string(metadata.exposure) + ", divided out");
+    if (metadata.colour_correction != V3d(1)) {
+        line("colour corr.", triple(metadata.colour_correction) + ", divided out");
     }
     line("layout", std::string(layoutName(file.panorama.layout)) + ", " +
                        std::to_string(image.width) + " x " + std::to_string(image.height));

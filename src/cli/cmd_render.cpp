@@ -108,15 +108,13 @@ bool isPng(const ImageOutputOptions& output) {
     return extension == ".png";
 }
 
-void writeFrame(Session& session, const RenderOptions& options, Renderer& renderer) {
+void writeFrame(Session& session, const RenderOptions& options, const WriteOptions& how,
+                Renderer& renderer) {
     const Camera camera = cameraOf(options);
     if (!isPng(options.output)) {
         const Image frame =
             session.stage("draw", [&] { return renderer.renderLinear(camera, options.display); });
-        session.stage("write", [&] {
-            session.write(options.output.output, frame,
-                          writeOptions(options.output, options.common));
-        });
+        session.stage("write", [&] { session.write(options.output.output, frame, how); });
         return;
     }
     const ByteImage frame =
@@ -130,6 +128,7 @@ void writeFrame(Session& session, const RenderOptions& options, Renderer& render
 
 void runRender(const RenderOptions& options) {
     Session session("render", options.common);
+    const WriteOptions how = writeOptions(options.output, options.common);
     cameraRays(cameraOf(options), options.frame.width, options.frame.height); // refuses bad cameras
     const Panorama probe = session.readProbe(options.probe);
     Scene scene;
@@ -154,7 +153,7 @@ void runRender(const RenderOptions& options) {
     FrameOptions frame = options.frame;
     if (!options.shader_folder.empty()) frame.shader_folder = options.shader_folder;
     Renderer renderer = session.stage("upload", [&] { return Renderer(context, scene, frame); });
-    writeFrame(session, options, renderer);
+    writeFrame(session, options, how, renderer);
     session.finish();
 }
 

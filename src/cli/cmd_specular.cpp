@@ -50,6 +50,7 @@ std::vector<PrefilterRequest> requestsOf(const SpecularOptions& options) {
 
 void runSpecular(const SpecularOptions& options) {
     Session session("specular", options.common);
+    const WriteOptions how = writeOptions(options.output, options.common);
     const std::vector<PrefilterRequest> requests = requestsOf(options);
     const Image latlong = latlongOf(session.readProbe(options.probe), session.threads());
     const auto results = runPrefilter(session, latlong, requests, options.quality);
@@ -58,7 +59,7 @@ void runSpecular(const SpecularOptions& options) {
             const std::string name = options.levels
                                          ? levelName(options.output.output, static_cast<int>(k))
                                          : options.output.output;
-            session.write(name, results[k].map, writeOptions(options.output, options.common));
+            session.write(name, results[k].map, how);
         }
     });
     session.finish();

@@ -33,7 +33,6 @@ void runCommandLine(int argc, char** argv) {
     CLI::App root("Image-based lighting: converts, convolves and renders with HDR probes.",
                   "ibltool");
     root.set_version_flag("--version", "ibltool " IBLTOOL_VERSION);
-    root.require_subcommand(1);
     root.footer(kFooter);
     const std::vector<Command> commands = {
         bindConvert(root), bindDiffuse(root), bindSpecular(root), bindLights(root),
@@ -46,6 +45,9 @@ void runCommandLine(int argc, char** argv) {
         return;
     } catch (const CLI::ParseError& error) {
         throw Error(ExitCode::usage, usageMessage(root, error));
+    }
+    if (root.get_subcommands().empty()) {
+        throw Error(ExitCode::usage, "a subcommand is required; see ibltool --help");
     }
     for (const Command& command : commands) {
         if (command.app->parsed()) command.run();

@@ -135,11 +135,6 @@ void Session::reportLosses(const WriteLosses& losses, const std::string& path,
 
 void Session::write(const std::string& path, const Panorama& panorama,
                     const WriteOptions& options) {
-    if (path == "-" && panorama.layout == Layout::faces) {
-        throw Error(ExitCode::usage,
-                    "-: faces are six files and do not fit standard output; choose "
-                    "another layout with --to");
-    }
     reportLosses(writeProbe(outputs_, path, panorama, options), path, options);
     for (const std::string& name : probeFileNames(path, panorama.layout))
         addOutput(name);

@@ -73,10 +73,6 @@ std::pair<PixelRegion, PixelRegion> cutRegion(const SummedAreaTable& table, cons
     return cutAt(table, r, longitude, begin + (end - begin) / 2);
 }
 
-bool canBeCut(const SummedAreaTable& table, const PixelRegion& r) {
-    return (r.width > 1 || r.height > 1) && table.energy(r) > 0;
-}
-
 /// Integral of the direction over each pixel of row j, as factors: x and z are `horizontal` times
 /// the integral of (sin phi, cos phi) over the pixel, y is `vertical`.
 struct RowMoments {
@@ -166,13 +162,17 @@ Light lightOf(const Image& latlong, const ColumnMoments& columns, const PixelReg
 
 std::vector<PixelRegion> medianCutRegions(const SummedAreaTable& table, int count) {
     std::vector<PixelRegion> regions{{openingColumn(table), 0, table.width(), table.height()}};
-    while (static_cast<int>(regions.size()) < count) {
+    const auto isLit = [&](const PixelRegion& r) { return table.energy(r) > 0; };
+    std::size_t lit = isLit(regions[0]) ? 1 : 0;
+    while (lit < static_cast<std::size_t>(count)) {
         std::vector<std::size_t> order;
         for (std::size_t i = 0; i < regions.size(); ++i) {
-            if (canBeCut(table, regions[i])) order.push_back(i);
+            if (isLit(regions[i]) && (regions[i].width > 1 || regions[i].height > 1)) {
+                order.push_back(i);
+            }
         }
         if (order.empty()) break;
-        const std::size_t wanted = static_cast<std::size_t>(count) - regions.size();
+        const std::size_t wanted = static_cast<std::size_t>(count) - lit;
         if (order.size() > wanted) {
             std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
                 return table.energy(regions[a]) > table.energy(regions[b]);
@@ -183,6 +183,7 @@ std::vector<PixelRegion> medianCutRegions(const SummedAreaTable& table, int coun
             const auto [first, second] = cutRegion(table, regions[i]);
             regions[i] = first;
             regions.push_back(second);
+            if (isLit(first) && isLit(second)) ++lit;
         }
     }
     return regions;
@@ -192,10 +193,25 @@ std::vector<Light> medianCut(const Image& latlong, int count, int threads) {
     const SummedAreaTable table(latlong, threads);
     const std::vector<PixelRegion> regions = medianCutRegions(table, count);
     const ColumnMoments columns = columnMoments(latlong.width);
-    std::vector<Light> lights(regions.size());
-    parallelFor(regions.size(), threads,
-                [&](std::size_t i) { lights[i] = lightOf(latlong, columns, regions[i]); });
-    std::erase_if(lights, [](const Light& light) { return light.irradiance == V3d(0); });
+    std::vector<Light> all(regions.size());
+    parallelFor(all.size(), threads,
+                [&](std::size_t i) { all[i] = lightOf(latlong, columns, regions[i]); });
+
+    std::vector<Light> lights;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (table.energy(regions[i]) > 0) lights.push_back(all[i]);
+    }
+    if (lights.empty()) return lights;
+    // A region without luminance is no light; what colour it has all the same (negative pixels, a
+    // radiance below the table's resolution) belongs to the light beside it.
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (table.energy(regions[i]) > 0 || all[i].irradiance == V3d(0)) continue;
+        const auto nearest =
+            std::max_element(lights.begin(), lights.end(), [&](const Light& a, const Light& b) {
+                return a.direction.dot(all[i].direction) < b.direction.dot(all[i].direction);
+            });
+        nearest->irradiance += all[i].irradiance;
+    }
     const V3d weights(kLuminanceRed, kLuminanceGreen, kLuminanceBlue);
     std::stable_sort(lights.begin(), lights.end(), [&](const Light& a, const Light& b) {
         return a.irradiance.dot(weights) > b.irradiance.dot(weights);

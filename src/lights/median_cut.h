@@ -25,15 +25,16 @@ struct Light {
 /// meridian of least energy so that no source is cut by the image's border. In each round every
 /// region is cut across its longer side (longitude scaled by the cosine of the region's middle
 /// latitude) where the energy on both sides is most nearly equal. Past the last power of two below
-/// `count` only the regions of most energy are cut, the heaviest first. The light stands at the
-/// region's energy centroid.
+/// `count` only the regions of most energy are cut, the heaviest first. Regions without energy are
+/// no lights and do not count. The light stands at the region's energy centroid.
 ///
 /// Returns at most `count` lights, from brightest to dimmest; fewer when there are fewer pixels
 /// with energy, none for a black probe. Radiance is constant over a pixel's rectangle. The
 /// irradiances add up to the probe's integral in each channel (negative pixels included).
 std::vector<Light> medianCut(const Image& latlong, int count, int threads);
 
-/// The regions alone, in the order in which the cuts made them.
+/// The regions alone, those without energy too, in the order in which the cuts made them; they tile
+/// the sphere. At most `count` of them have energy.
 std::vector<PixelRegion> medianCutRegions(const SummedAreaTable& table, int count);
 
 /// The probe's integral over all directions in each channel: radiance times solid angle.

@@ -93,7 +93,7 @@ TEST(Contract, WrongAspectIsRefusedUnlessTold) {
     ASSERT_EQ(
         runTool({"convert", "cube.exr", "--to", "faces", "-o", "f.exr"}, scratch.path()).exit_code,
         0);
-    expectRefused(runTool({"diffuse", "f_px.exr", "-o", "out.exr"}, scratch.path()), 2, "--from");
+    expectRefused(runTool({"diffuse", "f_px.exr", "-o", "out.exr"}, scratch.path()), 2, "layout");
     EXPECT_EQ(runTool({"diffuse", "f_px.exr", "--from", "latlong", "--size", "2", "-o", "out.exr"},
                       scratch.path())
                   .exit_code,
@@ -107,8 +107,8 @@ TEST(Contract, OnePixelProbes) {
     writeFile(scratch / "1x1.hdr", header + "-Y 1 +X 1\n" + pixel);
     writeFile(scratch / "2x1.hdr", header + "-Y 1 +X 2\n" + pixel + pixel);
     writeFile(scratch / "2x2.hdr", header + "-Y 2 +X 2\n" + pixel + pixel + pixel + pixel);
-    expectAllRefuse(scratch, "1x1.hdr", "--from");
-    expectAllRefuse(scratch, "2x2.hdr", "--from");
+    expectAllRefuse(scratch, "1x1.hdr", "layout");
+    expectAllRefuse(scratch, "2x2.hdr", "layout");
     for (const char* name : {"1x1.hdr", "2x1.hdr", "2x2.hdr"}) {
         for (Words command : kCommands) {
             command = with(command, name);
@@ -196,7 +196,7 @@ TEST(Contract, UnknownOptionsValuesAndCommands) {
     refused({"convert", "builtin:sky", "-o", "a.exr", "--threads", "-1"}, "--threads");
     refused({"convert", "builtin:sky", "-o", "a.exr", "--quiet", "--verbose"}, "--quiet");
     refused({"convert", "builtin:sky"}, "--output");
-    refused({"convert", "builtin:sky", "-o", "-", "--format", "exr"}, "--to");
+    refused({"convert", "builtin:sky", "-o", "-", "--format", "exr"}, "layout");
     EXPECT_TRUE(scratch.names().empty());
 }
 
@@ -221,8 +221,7 @@ TEST(Contract, UnwritableTargets) {
     expectRefused(
         runTool({"bake", "builtin:furnace", "--size", "4", "-o", "no/folder"}, scratch.path()), 4,
         "no/folder");
-    expectRefused(runTool({"convert", "builtin:furnace", "-o", "o.xyz"}, scratch.path()), 4,
-                  "o.xyz");
+    expectRefused(runTool({"convert", "builtin:furnace", "-o", "o.xyz"}, scratch.path()), 4, "xyz");
     EXPECT_EQ(scratch.names(), (Words{"folder"}));
 }
 
@@ -250,11 +249,11 @@ TEST(Contract, StandardInputAndOutput) {
                           scratch.path())
                       .exit_code,
                   0);
-        EXPECT_EQ(piped.out, readFile(scratch / (std::string("b.") + format)));
+        EXPECT_TRUE(piped.out == readFile(scratch / (std::string("b.") + format)));
     }
     expectRefused(runTool({"convert", "a.exr", "--to", "vcross", "-o", "-"}, scratch.path()), 1,
                   "--format");
-    expectRefused(runTool({"info", "-"}, scratch.path(), ""), 2, "-");
+    expectRefused(runTool({"info", "-"}, scratch.path(), ""), 2, "standard input");
 }
 
 TEST(Contract, SameBytesOnEveryRunAndForAnyThreadCount) {
@@ -271,7 +270,7 @@ TEST(Contract, SameBytesOnEveryRunAndForAnyThreadCount) {
             for (const std::string& name : fresh.names())
                 bytes += name + readFile(fresh / name);
             if (first.empty()) first = bytes;
-            EXPECT_EQ(bytes, first) << command[0] << " with " << threads << " threads";
+            EXPECT_TRUE(bytes == first) << command[0] << " with " << threads << " threads";
         }
     }
 }

@@ -51,8 +51,8 @@ TEST(Convert, EveryLayoutShowsTheSameDirections) {
                       std::string(name) + ".exr"});
         const Panorama result =
             probeAt(scratch / (std::string(name) + ".exr"), *layoutFromName(name));
-        // Letters' edges soften; a face turned or mirrored differs by about 0.5.
-        EXPECT_LT(difference(result, compass), 0.08);
+        // Letters' edges and grid lines soften; a face turned or mirrored differs by 0.4 and more.
+        EXPECT_LT(difference(result, compass), 0.15);
     }
 }
 
@@ -61,17 +61,19 @@ TEST(Convert, CrossToFacesAndBackIsExact) {
     run(scratch, {"convert", "builtin:compass", "--to", "vcross", "--size", "64", "-o", "v.exr"});
     run(scratch, {"convert", "v.exr", "--to", "faces", "-o", "f.exr"});
     run(scratch, {"convert", "f.exr", "--to", "vcross", "-o", "w.exr"});
-    EXPECT_EQ(readFile(scratch / "v.exr"), readFile(scratch / "w.exr"));
+    EXPECT_TRUE(readFile(scratch / "v.exr") == readFile(scratch / "w.exr"));
 }
 
 TEST(Convert, LatlongToFacesAndBack) {
     const Scratch scratch;
-    run(scratch, {"convert", "builtin:compass", "--to", "latlong", "--size", "64", "-o", "l.exr"});
+    // Something smooth, so that what is left is the conversion's own error.
+    run(scratch, {"specular", "builtin:compass", "--roughness", "0.5", "--to", "latlong", "--size",
+                  "64", "-o", "l.exr"});
     run(scratch, {"convert", "l.exr", "--to", "faces", "--size", "256", "-o", "f.exr"});
     run(scratch, {"convert", "f.exr", "--to", "latlong", "--size", "64", "-o", "m.exr"});
     EXPECT_LT(difference(probeAt(scratch / "m.exr", Layout::latlong),
                          probeAt(scratch / "l.exr", Layout::latlong)),
-              0.05);
+              2e-3);
 }
 
 TEST(Convert, FormatsKeepTheProbe) {
@@ -125,7 +127,7 @@ TEST(Convert, AnOutsideReaderSeesTheFaces) {
     ASSERT_EQ(outside.exit_code, 0) << outside.err;
     const Panorama cube = readProbe((scratch / "cube.exr").string(), {}).panorama;
     EXPECT_EQ(cube.layout, Layout::exrCube);
-    EXPECT_LT(difference(cube, builtinProbe("builtin:compass")), 0.15);
+    EXPECT_LT(difference(cube, builtinProbe("builtin:compass")), 0.25);
 }
 
 } // namespace

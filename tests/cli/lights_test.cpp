@@ -82,9 +82,9 @@ TEST(Lights, Refusals) {
         words.insert(words.begin(), "lights");
         expectRefused(runTool(words, scratch.path()), 1, said);
     };
-    refused({"builtin:sky", "-n", "0"}, "-n");
-    refused({"builtin:sky", "-n", "65537"}, "-n");
-    refused({"builtin:sky", "-n", "many"}, "-n");
+    refused({"builtin:sky", "-n", "0"}, "--count");
+    refused({"builtin:sky", "-n", "65537"}, "--count");
+    refused({"builtin:sky", "-n", "many"}, "--count");
     refused({"builtin:sky", "--method", "best"}, "--method");
     refused({}, "IN");
     EXPECT_TRUE(scratch.names().empty());

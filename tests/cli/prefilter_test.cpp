@@ -56,8 +56,8 @@ TEST(Specular, RoughnessZeroIsConvert) {
                   .exit_code,
               0);
     for (const char* face : {"px", "nx", "py", "ny", "pz", "nz"}) {
-        EXPECT_EQ(readFile(scratch / ("s_" + std::string(face) + ".exr")),
-                  readFile(scratch / ("c_" + std::string(face) + ".exr")));
+        EXPECT_TRUE(readFile(scratch / ("s_" + std::string(face) + ".exr")) ==
+                    readFile(scratch / ("c_" + std::string(face) + ".exr")));
     }
 }
 
