@@ -63,29 +63,28 @@ struct SkyRow {
     }
 };
 
-/// Adds the disc to the pixels it covers, with the energy of the true disc at any resolution: it is
-/// sampled at equal steps of solid angle (rings of equal area, points at equal angles).
+/// Adds the disc to the pixels it covers, with the energy of the true disc at any resolution:
+/// points of equal share, evenly over its solid angle (a sunflower's spiral, Vogel 1979), some
+/// hundred for each pixel that it covers.
 void addSun(Image& image) {
-    const int rings = 16 + static_cast<int>(16 * kSunRadius / (kPi / image.height));
-    const int points = 4 * rings;
     const V3d sun = sunDirection();
     const V3d right = V3d(0, 1, 0).cross(sun).normalized(), up = sun.cross(right);
+    const double pixels = 1 + kSunRadius * image.height / kPi;
+    const int points = static_cast<int>(1024 * pixels * pixels);
+    const double golden_angle = kPi * (3 - std::sqrt(5.0));
     const double solid_angle = 4 * kPi * std::pow(std::sin(0.5 * kSunRadius), 2);
-    const V3d share = vector(kSunRadiance) * (solid_angle / (rings * points));
-    for (int ring = 0; ring < rings; ++ring) {
-        const double radius = kSunRadius * std::sqrt((ring + 0.5) / rings);
-        for (int point = 0; point < points; ++point) {
-            const double angle = 2 * kPi * (point + 0.5 * (ring % 2)) / points;
-            const V3d d = sun * std::cos(radius) +
-                          (right * std::cos(angle) + up * std::sin(angle)) * std::sin(radius);
-            const V2d p = latlongPoint(d);
-            const int x = std::min(static_cast<int>(p.x * image.width), image.width - 1);
-            const int y = std::min(static_cast<int>(p.y * image.height), image.height - 1);
-            const double pixel = latlongPixelSolidAngle(image.width, image.height, y);
-            for (int c = 0; c < 3; ++c) {
-                image.at(x, y)[c] += static_cast<float>(share[c] / pixel);
-            }
-        }
+    const V3d share = vector(kSunRadiance) * (solid_angle / points);
+    for (int point = 0; point < points; ++point) {
+        const double radius = kSunRadius * std::sqrt((point + 0.5) / points);
+        const double angle = golden_angle * point;
+        const V3d d = sun * std::cos(radius) +
+                      (right * std::cos(angle) + up * std::sin(angle)) * std::sin(radius);
+        const V2d p = latlongPoint(d);
+        const int x = std::min(static_cast<int>(p.x * image.width), image.width - 1);
+        const int y = std::min(static_cast<int>(p.y * image.height), image.height - 1);
+        const double pixel = latlongPixelSolidAngle(image.width, image.height, y);
+        for (int c = 0; c < 3; ++c)
+            image.at(x, y)[c] += static_cast<float>(share[c] / pixel);
     }
 }
 

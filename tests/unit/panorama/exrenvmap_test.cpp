@@ -59,9 +59,10 @@ TEST(ExrEnvmap, ReadsOurCubeAndWritesTheLatlongWeExpect) {
     const Panorama latlong = converted(folder, source, "-l -w 64");
     ASSERT_EQ(latlong.layout, Layout::exrLatlong);
     EXPECT_LT(worstAgainstScene(latlong), 1e-2);
+    // Ours takes texels as constant, so that a pixel of one and a half is off by a part of one.
     EXPECT_LT(
         test::largestDifference(latlong.image, resample(source, Layout::exrLatlong, 32).image),
-        1e-2);
+        3e-2);
 }
 
 // What we convert ourselves is the scene, in both layouts, from the plain ones.
