@@ -3,9 +3,9 @@
 #include "core/error.h"
 
 #include <algorithm>
-#include <cctype>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 
 namespace ibl {
 namespace {
@@ -22,7 +22,7 @@ SourceFile readShader(std::string_view name, const std::optional<std::filesystem
             std::ifstream file(path);
             std::string text{std::istreambuf_iterator<char>(file), {}};
             if (!file) throw inputError(path.string(), "cannot be read; check its permissions");
-            return {path.string(), std::move(text)};
+            return {path.string(), std::move(text) + "\n"};
         }
     }
     const auto shaders = embeddedShaders();
@@ -32,25 +32,30 @@ SourceFile readShader(std::string_view name, const std::optional<std::filesystem
     return {std::string(name), std::string(found->text)};
 }
 
-// Compilers report SOURCE:LINE(COLUMN) (Mesa) or SOURCE(LINE) (NVIDIA), with the number that #line
-// gave the source. The first line that begins so, or else the first of all, is put as FILE:LINE.
-Error compileError(const std::vector<SourceFile>& files, std::string_view log) {
-    std::string_view first = log.substr(0, log.find('\n'));
-    const auto digits = [](std::string_view text, std::size_t from) {
-        std::size_t end = from;
-        while (end < text.size() && std::isdigit(static_cast<unsigned char>(text[end])))
-            ++end;
-        return text.substr(from, end - from);
-    };
-    const std::string_view source = digits(first, 0);
-    if (!source.empty() && source.size() < 4 && source.size() < first.size()) {
-        const std::size_t index = std::stoul(std::string(source));
-        const std::string_view line = digits(first, source.size() + 1);
-        if (index < files.size() && !line.empty()) {
-            const std::size_t colon = first.find(": ", source.size());
-            const auto what = colon == first.npos ? first : first.substr(colon + 2);
-            return inputError(files[index].name + ":" + std::string(line),
-                              std::string(what) + "; correct the shader");
+std::size_t lineCount(std::string_view text) {
+    return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+}
+
+// Compilers report 0:LINE(COLUMN) (Mesa) or 0(LINE) (NVIDIA), the line in all that they were given,
+// which begins with `prelude` lines and goes on with the files. (#line with a source number would
+// say it directly, but Mesa drops the number.)
+Error compileError(const std::vector<SourceFile>& files, std::size_t prelude,
+                   std::string_view log) {
+    const std::string_view first = log.substr(0, log.find('\n'));
+    std::size_t line = 0;
+    char separator = 0;
+    std::istringstream place{std::string(first)};
+    if (int source = 0; place >> source >> separator >> line && line > prelude) {
+        line -= prelude;
+        const std::size_t colon = first.find(": ");
+        const std::string what(colon == first.npos ? first : first.substr(colon + 2));
+        for (const SourceFile& file : files) {
+            const std::size_t count = lineCount(file.text);
+            if (line <= count) {
+                return inputError(file.name + ":" + std::to_string(line),
+                                  what + "; correct the shader");
+            }
+            line -= count;
         }
     }
     return inputError(files.back().name, std::string(first) + "; correct the shader");
@@ -61,9 +66,9 @@ ShaderStage compile(GLenum stage, const std::vector<SourceFile>& files,
     std::string text = "#version 450 core\n";
     for (const std::string& definition : definitions)
         text += "#define " + definition + "\n";
-    for (std::size_t i = 0; i < files.size(); ++i) {
-        text += "#line 1 " + std::to_string(i) + "\n" + files[i].text + "\n";
-    }
+    const std::size_t prelude = lineCount(text);
+    for (const SourceFile& file : files)
+        text += file.text;
     ShaderStage shader(glCreateShader(stage));
     const char* pointer = text.c_str();
     glShaderSource(shader.id(), 1, &pointer, nullptr);
@@ -75,7 +80,7 @@ ShaderStage compile(GLenum stage, const std::vector<SourceFile>& files,
         GLsizei length = 0;
         glGetShaderInfoLog(shader.id(), static_cast<GLsizei>(log.size()), &length, log.data());
         log.resize(static_cast<std::size_t>(length));
-        throw compileError(files, log);
+        throw compileError(files, prelude, log);
     }
     return shader;
 }

@@ -53,14 +53,16 @@ const std::array<Patch, 4> kHalves{{
 constexpr std::uint32_t kSegments = 24;
 
 Patch turnedPatch(const std::array<ProfilePoint, 4>& profile, int quarter) {
-    constexpr std::array<V2d, 4> arc{
-        {{1, 0}, {1, kQuarterTurnHandle}, {kQuarterTurnHandle, 1}, {0, 1}}};
+    // Clockwise seen from above, as the halves go round their tubes: outside is on one side for
+    // all.
+    constexpr double k = kQuarterTurnHandle;
+    const std::array<V2d, 4> arc{V2d(1, 0), V2d(1, -k), V2d(k, -1), V2d(0, -1)};
     Patch patch;
     for (std::size_t i = 0; i < 4; ++i) {
         for (std::size_t j = 0; j < 4; ++j) {
             V2d p = arc[j] * profile[i].radius;
             for (int q = 0; q < quarter; ++q)
-                p = {-p.y, p.x};
+                p = {p.y, -p.x};
             patch[i][j] = {p.x, p.y, profile[i].height};
         }
     }

@@ -114,6 +114,22 @@ TEST(Mesh, SolidsAreClosedAndConsistentlyWound) {
     }
 }
 
+TEST(Mesh, TheFarthestPointInAnyDirectionLooksThere) {
+    for (const char* name : {"cube", "dodecahedron", "torus", "teapot"}) {
+        const Mesh mesh = builtinMesh(name);
+        for (int k = 0; k < 300; ++k) { // spread by the golden angle
+            const double y = 1 - (2 * k + 1) / 300.0, phi = k * 2.399963;
+            const double r = std::sqrt(1 - y * y);
+            const V3f d(V3d(r * std::cos(phi), y, r * std::sin(phi)));
+            std::size_t farthest = 0;
+            for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+                if (mesh.positions[i].dot(d) > mesh.positions[farthest].dot(d)) farthest = i;
+            }
+            ASSERT_GT(mesh.normals[farthest].dot(d), 0) << name << " " << d;
+        }
+    }
+}
+
 TEST(Mesh, TorusNormalsAreExact) {
     const Mesh mesh = makeTorus();
     for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
@@ -150,9 +166,6 @@ TEST(Mesh, TeapotIsOpenOnlyWhereNewellsIs) {
     }
     EXPECT_GE(up, 4);
     EXPECT_GE(down, 4);
-    // Normals of patches that meet agree, so that no seam shows: their shared vertices differ by
-    // less than a degree except where the pot has creases (rim of the lid, handle's and spout's
-    // roots).
     const Box3f box = bounds({mesh});
     EXPECT_GT(box.max.x, box.max.y); // spout towards +X, wider than high
 }

@@ -14,7 +14,7 @@ namespace ibl {
 namespace {
 
 const std::vector<Camera> kCameras{
-    {},                                             // from +Z
+    orbitCamera(0.3, 0.2, 4, V3d(0), 40),           // no ray on a face's diagonal
     orbitCamera(130, 25, 3, V3d(0), 50),            //
     {{-2, -3, 1}, {0.4, 0.1, -0.3}, {0, 0, 1}, 35}, // off centre, rolled
     {{0, 0, -1.2}, {0.3, 0, 0}, {0, 1, 0}, 120},    // close and wide
