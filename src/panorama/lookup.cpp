@@ -19,9 +19,9 @@ int columnsAround(const Panorama& p) {
     return border ? std::max(1, p.image.width - 1) : p.image.width;
 }
 
-/// Column k (any integer) of a row, around the seam.
+/// Column k of a row, around the seam; k at most one turn outside.
 V3d wrapped(const Panorama& p, int columns, const float* row, long k) {
-    const long c = ((k % columns) + columns) % columns;
+    const long c = k < 0 ? k + columns : (k >= columns ? k - columns : k);
     if (p.layout == Layout::exrLatlong && c == 0) {
         return (rgb(row) + rgb(row + 3L * (p.image.width - 1))) * 0.5;
     }
@@ -61,7 +61,8 @@ V3d latlongRadiance(const Sampler& sampler, const V3d& direction, double width) 
     const bool border = p.layout == Layout::exrLatlong;
     const int columns = columnsAround(p), rows = p.image.height;
     const V2d point = latlongPoint(direction);
-    const double x = border ? point.x * columns : point.x * columns - 0.5;
+    double x = border ? point.x * columns : point.x * columns - 0.5;
+    if (x >= columns) x -= columns;
 
     // One column's width is what interpolation smooths by anyway; all the way round stays all.
     double columns_wide = 0;
@@ -98,6 +99,10 @@ V3d faceTexel(const Sampler& sampler, int face, int i, int j) {
     return rgb(sampler.panorama->image.at(pixel.x, pixel.y));
 }
 
+V3d bilinear(const V3d& a, const V3d& b, const V3d& c, const V3d& d, double fx, double fy) {
+    return (a * (1 - fx) + b * fx) * (1 - fy) + (c * (1 - fx) + d * fx) * fy;
+}
+
 /// Texel (i, j) of a face, one of the two at most one step outside it: then its neighbour across
 /// the edge. The direction of the imagined texel's centre meets the next face less than half a
 /// texel from the neighbour's centre (at worst N / (2 (N + 1)) of one), so that it is found by
@@ -118,6 +123,11 @@ V3d cubeRadiance(const Sampler& sampler, const V3d& direction) {
     const double x = 0.5 * (p.s + 1) * edge - 0.5, y = 0.5 * (p.t + 1) * edge - 0.5;
     const int i = static_cast<int>(std::floor(x)), j = static_cast<int>(std::floor(y));
     const double fx = x - i, fy = y - j;
+    if (i >= 0 && j >= 0 && i + 1 < edge && j + 1 < edge) {
+        return bilinear(faceTexel(sampler, p.face, i, j), faceTexel(sampler, p.face, i + 1, j),
+                        faceTexel(sampler, p.face, i, j + 1),
+                        faceTexel(sampler, p.face, i + 1, j + 1), fx, fy);
+    }
     std::array<V3d, 4> texels;
     int corner = -1;
     V3d sum(0);
@@ -131,8 +141,7 @@ V3d cubeRadiance(const Sampler& sampler, const V3d& direction) {
         sum += texels[k];
     }
     if (corner >= 0) texels[corner] = sum / 3;
-    return (texels[0] * (1 - fx) + texels[1] * fx) * (1 - fy) +
-           (texels[2] * (1 - fx) + texels[3] * fx) * fy;
+    return bilinear(texels[0], texels[1], texels[2], texels[3], fx, fy);
 }
 
 /// OpenEXR's faces carry their own edges, so that a lookup never leaves its face.
@@ -145,8 +154,7 @@ V3d borderCubeRadiance(const Sampler& sampler, const V3d& direction) {
     const int j = std::clamp(static_cast<int>(y), 0, edge - 2);
     const double fx = x - i, fy = y - j;
     const auto at = [&](int a, int b) { return faceTexel(sampler, p.face, a, b); };
-    return (at(i, j) * (1 - fx) + at(i + 1, j) * fx) * (1 - fy) +
-           (at(i, j + 1) * (1 - fx) + at(i + 1, j + 1) * fx) * fy;
+    return bilinear(at(i, j), at(i + 1, j), at(i, j + 1), at(i + 1, j + 1), fx, fy);
 }
 
 } // namespace

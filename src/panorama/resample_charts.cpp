@@ -131,11 +131,18 @@ void cubeToLatlong(const Panorama& source, Panorama& result, int threads) {
         });
     }
     const Sampler sampler = makeSampler(source);
+    std::vector<V3d> equator(static_cast<std::size_t>(grid.columns));
+    for (int x = 0; x < grid.columns; ++x) {
+        equator[static_cast<std::size_t>(x)] =
+            latlongDirection((x + 0.5 + grid.first) / grid.columns, 0.5);
+    }
     parallelFor(static_cast<std::size_t>(grid.rows()), threads, [&](std::size_t row) {
         const int y = static_cast<int>(row);
         const double v = centreAt(y, grid.rows(), to_border);
+        const double sine = std::sin(kPi * v), cosine = std::cos(kPi * v);
         for (int x = 0; x < grid.columns; ++x) {
-            const V3d direction = latlongDirection((x + 0.5 + grid.first) / grid.columns, v);
+            const V3d& level = equator[static_cast<std::size_t>(x)];
+            const V3d direction(level.x * sine, cosine, level.z * sine);
             const double share = areaShare(row_pitch / texelPitch(pitch_on_face, direction));
             V3d value(0);
             if (share > 0) {

@@ -184,6 +184,23 @@ TEST(Resample, FurnaceStaysOne) {
     }
 }
 
+// By the border rule, too, whatever a header claims about an image of one or two pixels.
+TEST(Resample, TinyBorderLatlongs) {
+    for (V2i e : {V2i(1, 1), V2i(2, 1), V2i(1, 2), V2i(2, 2), V2i(3, 2), V2i(1, 9), V2i(9, 1)}) {
+        const Panorama source =
+            filled(Layout::exrLatlong, e.x, e.y, [](const V3d&) { return V3d(2); });
+        EXPECT_DOUBLE_EQ(radianceAt(source, V3d(-0.0, 0.1, -1)).x, 2);
+        EXPECT_DOUBLE_EQ(radianceAt(source, V3d(0.0, 1, 0.0)).x, 2);
+        for (Layout to : {Layout::latlong, Layout::faces, Layout::exrLatlong, Layout::exrCube}) {
+            for (int size : {1, 3, 16}) {
+                for (float v : resample(source, to, size, 1).image.pixels) {
+                    ASSERT_NEAR(v, 2, 3e-7) << title(Layout::exrLatlong, e, to, size);
+                }
+            }
+        }
+    }
+}
+
 TEST(Resample, TinyAndOddLatlongs) {
     for (V2i e : {V2i(1, 1), V2i(2, 1), V2i(3, 2), V2i(16, 8), V2i(53, 7), V2i(1, 31)}) {
         const Panorama source = noise(Layout::latlong, e.x, e.y, 12);
