@@ -18,7 +18,8 @@ constexpr int kRowsAtOnce = 2 * kLanes;
 
 /// Pixels of rows first .. first + kRowsAtOnce - 1, one channel: the first eight rows as real
 /// parts, the others as imaginary parts.
-void loadRows(const Image& probe, int first, int channel, double scale, ComplexLanes* data) {
+void loadRows(const Image& probe, int first, int channel, double scale, double threshold,
+              ComplexLanes* data) {
     for (int lane = 0; lane < kRowsAtOnce; ++lane) {
         const int j = first + lane;
         if (j >= probe.height) {
@@ -29,8 +30,8 @@ void loadRows(const Image& probe, int first, int channel, double scale, ComplexL
         }
         const float* in = probe.row(j) + channel;
         for (int i = 0; i < probe.width; ++i) {
-            (lane < kLanes ? data[i].re : data[i].im)[lane % kLanes] =
-                scale * in[static_cast<std::ptrdiff_t>(i) * probe.channels];
+            (lane < kLanes ? data[i].re : data[i].im)[lane % kLanes] = std::clamp(
+                scale * in[static_cast<std::ptrdiff_t>(i) * probe.channels], -threshold, threshold);
         }
     }
 }
@@ -40,6 +41,7 @@ struct RowTask {
     const FftPlan& plan;
     const std::vector<std::complex<double>>& factors; ///< per m: area and half-pixel phase
     double scale;
+    double threshold;
 };
 
 void storeLanes(const Lanes& value, int count, double* out) {
@@ -53,7 +55,7 @@ void analyseRowBlock(const RowTask& task, int first, RowSpectrum& result) {
     const int upper = std::clamp(result.rows - first, 0, kLanes);
     const int lower = std::clamp(result.rows - first - kLanes, 0, kLanes);
     for (int channel = 0; channel < 3; ++channel) {
-        loadRows(task.probe, first, channel, task.scale, data.data());
+        loadRows(task.probe, first, channel, task.scale, task.threshold, data.data());
         fft(task.plan, data.data(), work.data());
         for (int m = 0; m <= result.degree; ++m) {
             // X = A + iB with A, B the transforms of real rows: A = (X_m + conj X_-m) / 2, ...
@@ -74,7 +76,8 @@ void analyseRowBlock(const RowTask& task, int first, RowSpectrum& result) {
 
 } // namespace
 
-RowSpectrum analyseRows(const Image& probe, double scale, int degree, int threads) {
+RowSpectrum analyseRows(const Image& probe, double scale, double threshold, int degree,
+                        int threads) {
     RowSpectrum result{probe.height, degree, {}};
     result.values.resize(static_cast<std::size_t>(degree + 1) * kParts * probe.height);
     const FftPlan plan = makeFftPlan(probe.width);
@@ -83,7 +86,7 @@ RowSpectrum analyseRows(const Image& probe, double scale, int degree, int thread
         const double x = kPi * m / probe.width;
         factors[m] = std::polar(2 * kPi / probe.width * (m == 0 ? 1 : std::sin(x) / x), -x);
     }
-    const RowTask task{probe, plan, factors, scale};
+    const RowTask task{probe, plan, factors, scale, threshold};
     const std::size_t blocks = (probe.height + kRowsAtOnce - 1) / kRowsAtOnce;
     parallelFor(blocks, threads, [&](std::size_t block) {
         analyseRowBlock(task, static_cast<int>(block) * kRowsAtOnce, result);

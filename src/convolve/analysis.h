@@ -24,8 +24,9 @@ struct RowSpectrum {
     }
 };
 
-/// `probe` times `scale`, RGB, row by row.
-RowSpectrum analyseRows(const Image& probe, double scale, int degree, int threads);
+/// `probe` (RGB) times `scale`, clamped to +-threshold.
+RowSpectrum analyseRows(const Image& probe, double scale, double threshold, int degree,
+                        int threads);
 
 /// f_lm up to `degree` <= rows.degree, exact but for rounding (theta_resample.h).
 Harmonics analyse(const RowSpectrum& rows, int degree, int threads);

@@ -3,21 +3,28 @@
 
 #include "panorama/panorama.h"
 
-#include <cstdint>
 #include <vector>
 
 namespace ibl {
 
-/// Lat-long points (u, v) of all texels of a map that have a direction, in the order of its pixels.
-struct TexelPoints {
-    std::vector<std::uint32_t> pixel; ///< index of the texel in the image
-    std::vector<double> u;
-    std::vector<double> v;
-    std::vector<double> solid_angle;
-
-    std::size_t size() const { return pixel.size(); }
+/// Points within each texel at which a field is read: samples x samples, spread over the texel
+/// shrunk to `scale` of its extent about its centre. One sample is the centre.
+struct Footprint {
+    double scale = 0;
+    int samples = 1;
 };
 
-TexelPoints texelPoints(const Panorama& map, int threads);
+/// The texels of one row of a map that have a direction, and their points.
+struct RowPoints {
+    std::vector<int> column;         ///< of each texel
+    std::vector<double> solid_angle; ///< of each texel
+    int per_texel = 1;
+    std::vector<double> u; ///< lat-long points, per_texel to a texel
+    std::vector<double> v;
+    std::vector<double> share; ///< of each point in its texel's mean; they sum to 1
+};
+
+/// Row y of a map of that layout and extent.
+RowPoints rowPoints(Layout layout, int width, int height, int y, const Footprint& footprint);
 
 } // namespace ibl

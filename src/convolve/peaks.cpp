@@ -1,0 +1,188 @@
+#include "convolve/peaks.h"
+
+#include "convolve/edges.h"
+#include "core/parallel.h"
+#include "panorama/conventions.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ibl {
+namespace {
+
+constexpr int kRowsPerTask = 16;
+
+double magnitude(const float* pixel, double scale) {
+    return scale * std::max({std::abs(double{pixel[0]}), std::abs(double{pixel[1]}),
+                             std::abs(double{pixel[2]})});
+}
+
+/// A peak's rectangle and the axis-independent part of its Gauss points.
+struct PeakRectangle {
+    double top, bottom; ///< colatitudes
+    double west, east;  ///< azimuths psi
+    double size;        ///< the longer edge, radians
+    double solid_angle;
+    V3d points[4]; ///< 2 x 2 Gauss points in (psi, cos theta), in the (z = +Y pole) frame
+};
+
+V3d directionOf(double cos_theta, double psi) {
+    const double s = std::sqrt(std::max(0.0, 1 - cos_theta * cos_theta));
+    return {s * std::cos(psi), s * std::sin(psi), cos_theta};
+}
+
+PeakRectangle rectangleOf(const Peak& peak, int width, int height) {
+    PeakRectangle r;
+    r.top = kPi * peak.row / height;
+    r.bottom = kPi * (peak.row + 1) / height;
+    r.west = 2 * kPi * peak.column / width;
+    r.east = 2 * kPi * (peak.column + 1) / width;
+    r.solid_angle = latlongPixelSolidAngle(width, height, peak.row);
+    r.size = std::max(kPi / height, 2 * kPi / width * std::sin(kPi * (peak.row + 0.5) / height));
+    const double z0 = std::cos(r.top), z1 = std::cos(r.bottom), g = 0.5 / std::sqrt(3.0);
+    for (int i = 0; i < 4; ++i) {
+        const double a = 0.5 + (i % 2 ? g : -g), b = 0.5 + (i / 2 ? g : -g);
+        r.points[i] = directionOf(z0 + (z1 - z0) * b, r.west + (r.east - r.west) * a);
+    }
+    return r;
+}
+
+/// The lobe's normalised mass over the rectangle, by its edges.
+double massByEdges(const Lobe& lobe, const Axis& axis, const PeakRectangle& r) {
+    const auto q = [&](double h) { return -lobeMassBeyond(lobe, h); };
+    // The rectangle's azimuths about the axis's, as near as can be.
+    const double turn = 2 * kPi * std::round((0.5 * (r.west + r.east) - axis.psi) / (2 * kPi));
+    const double west = r.west - turn - axis.psi, east = r.east - turn - axis.psi;
+    const bool inside = axis.theta > r.top && axis.theta < r.bottom && west < 0 && east > 0;
+    constexpr double kLongest = 0.2;
+    const double ring = parallelIntegral(q, axis, r.bottom, west, east, kLongest) -
+                        parallelIntegral(q, axis, r.top, west, east, kLongest);
+    // Counter-clockwise: the east side northwards, the west side southwards.
+    const double sides = meridianIntegral(q, axis, east, r.top, r.bottom, kLongest) -
+                         meridianIntegral(q, axis, west, r.top, r.bottom, kLongest);
+    return (inside ? 1 : 0) + (ring + sides) / (2 * kPi);
+}
+
+/// Angle over which the lobe changes by its own size, t from its axis: as far as its horizon or its
+/// poles in the complex plane.
+double scaleAt(const Lobe& lobe, double width, double t) {
+    const double to_horizon = std::abs(0.5 * kPi - t);
+    const double smooth = lobe.kernel == Kernel::ggx ? std::max(width, 0.5 * t) : width;
+    return std::min(smooth, to_horizon);
+}
+
+/// The lobe's normalised mass over the rectangle: by four Gauss points where the lobe is smooth
+/// over it (their error is 4e-8 of it at most), else by its edges.
+double peakMass(const PeakRectangle& r, const Lobe& lobe, double lobe_width, double norm,
+                const Axis& axis, const V3d& x) {
+    const double t = std::acos(std::clamp(x.dot(r.points[0]), -1.0, 1.0));
+    if (t > 0.5 * kPi + 2 * r.size) return 0;
+    if (r.size > 0.1 * scaleAt(lobe, lobe_width, t)) return massByEdges(lobe, axis, r);
+    double mass = 0;
+    for (const V3d& point : r.points)
+        mass += lobeValue(lobe, x.dot(point));
+    return 0.25 * r.solid_angle * norm * mass;
+}
+
+void addPixel(ProbeStatistics& part, const Candidate& pixel) {
+    const double w = pixel.solid_angle;
+    for (int c = 0; c < 3; ++c) {
+        const double value = pixel.value[c];
+        part.absolute[c] += w * std::abs(value);
+        part.energy += w * value * value;
+        part.squares += w * value * w * value;
+        part.negative = part.negative || value < 0;
+    }
+    const auto brighter = [](const Candidate& a, const Candidate& b) {
+        return a.magnitude > b.magnitude;
+    };
+    std::vector<Candidate>& best = part.brightest; // a heap with the dimmest on top
+    const bool full = best.size() > kMostPeaks;
+    if (full && pixel.magnitude <= best.front().magnitude) return;
+    if (full) {
+        std::ranges::pop_heap(best, brighter);
+        best.pop_back();
+    }
+    best.push_back(pixel);
+    std::ranges::push_heap(best, brighter);
+}
+
+} // namespace
+
+ProbeStatistics measureProbe(const Image& probe, double scale, int threads) {
+    const std::size_t tasks = (probe.height + kRowsPerTask - 1) / kRowsPerTask;
+    std::vector<ProbeStatistics> parts(tasks);
+    parallelFor(tasks, threads, [&](std::size_t task) {
+        const int first = static_cast<int>(task) * kRowsPerTask;
+        for (int j = first; j < std::min(first + kRowsPerTask, probe.height); ++j) {
+            const double w = latlongPixelSolidAngle(probe.width, probe.height, j);
+            for (int i = 0; i < probe.width; ++i) {
+                const float* p = probe.at(i, j);
+                addPixel(
+                    parts[task],
+                    {i, j, magnitude(p, scale), w, {scale * p[0], scale * p[1], scale * p[2]}});
+            }
+        }
+    });
+    ProbeStatistics all;
+    for (const ProbeStatistics& part : parts) {
+        all.energy += part.energy;
+        all.squares += part.squares;
+        all.negative = all.negative || part.negative;
+        for (int c = 0; c < 3; ++c)
+            all.absolute[c] += part.absolute[c];
+        all.brightest.insert(all.brightest.end(), part.brightest.begin(), part.brightest.end());
+    }
+    std::ranges::stable_sort(all.brightest, std::greater<>(), &Candidate::magnitude);
+    if (all.brightest.size() > kMostPeaks + 1) all.brightest.resize(kMostPeaks + 1);
+    return all;
+}
+
+double peakThreshold(const ProbeStatistics& statistics, int count) {
+    const std::size_t n = static_cast<std::size_t>(count);
+    return n < statistics.brightest.size() ? statistics.brightest[n].magnitude : 0;
+}
+
+double clampedEnergy(const ProbeStatistics& statistics, double threshold) {
+    double taken = 0;
+    for (const Candidate& pixel : statistics.brightest) {
+        for (const double value : pixel.value) {
+            const double rest = std::min(std::abs(value), threshold);
+            taken += pixel.solid_angle * (value * value - rest * rest);
+        }
+    }
+    return std::max(0.0, statistics.energy - taken);
+}
+
+std::vector<Peak> splitPeaks(const ProbeStatistics& statistics, double threshold) {
+    std::vector<Peak> peaks;
+    for (const Candidate& pixel : statistics.brightest) {
+        if (pixel.magnitude <= threshold) break;
+        Peak peak{pixel.column, pixel.row, {}};
+        for (int c = 0; c < 3; ++c) {
+            peak.excess[c] = pixel.value[c] - std::clamp(pixel.value[c], -threshold, threshold);
+        }
+        peaks.push_back(peak);
+    }
+    return peaks;
+}
+
+void addPeaks(const std::vector<Peak>& peaks, int width, int height, const Lobe& lobe,
+              const std::vector<double>& u, const std::vector<double>& v, double* values) {
+    if (peaks.empty()) return;
+    std::vector<PeakRectangle> rectangles;
+    for (const Peak& peak : peaks)
+        rectangles.push_back(rectangleOf(peak, width, height));
+    const double norm = 1 / lobeIntegral(lobe), lobe_width = lobeWidth(lobe);
+    for (std::size_t i = 0; i < u.size(); ++i) {
+        const Axis axis = makeAxis(u[i], v[i]);
+        const V3d x = directionOf(axis.cos_theta, axis.psi);
+        for (std::size_t p = 0; p < peaks.size(); ++p) {
+            const double mass = peakMass(rectangles[p], lobe, lobe_width, norm, axis, x);
+            for (int c = 0; c < 3; ++c)
+                values[3 * i + c] += peaks[p].excess[c] * mass;
+        }
+    }
+}
+
+} // namespace ibl

@@ -1,0 +1,59 @@
+// The brightest pixels, convolved directly.
+//
+// A band limit leaves an error in proportion to the energy that the probe has beyond it, and a
+// small sun has most of it there. What a few pixels have above a threshold is therefore taken out
+// before the analysis and convolved exactly with each lobe, so the harmonics see the probe clamped
+// at the threshold (non-negative where the probe is).
+#pragma once
+
+#include "convolve/lobe.h"
+#include "image/image.h"
+
+#include <vector>
+
+namespace ibl {
+
+/// A pixel that may be split off. Values are scaled like the analysis.
+struct Candidate {
+    int column;
+    int row;
+    double magnitude; ///< of its largest channel
+    double solid_angle;
+    double value[3];
+};
+
+/// Statistics of a probe, from which the split is chosen.
+struct ProbeStatistics {
+    std::vector<Candidate> brightest; ///< by magnitude, descending; at most kMostPeaks + 1
+    double energy = 0;                ///< integral of L^2 over the sphere, all channels
+    double squares = 0;               ///< sum of (w L)^2
+    double absolute[3] = {0, 0, 0};   ///< integral of |L|
+    bool negative = false;            ///< some value is below zero
+};
+
+inline constexpr int kMostPeaks = 1024;
+
+ProbeStatistics measureProbe(const Image& probe, double scale, int threads);
+
+/// The threshold that splits off the `count` brightest pixels: the magnitude of the next one.
+double peakThreshold(const ProbeStatistics& statistics, int count);
+
+/// The integral of L^2 of the probe clamped to +-threshold.
+double clampedEnergy(const ProbeStatistics& statistics, double threshold);
+
+/// What a pixel has above the threshold (below minus it, for negative values).
+struct Peak {
+    int column;
+    int row;
+    double excess[3];
+};
+
+std::vector<Peak> splitPeaks(const ProbeStatistics& statistics, double threshold);
+
+/// Adds the peaks' part of the lobe-weighted mean at lat-long points: values[3 i + channel] += sum
+/// of excess times the lobe's normalised mass over the peak's rectangle. `width` x `height` is the
+/// probe's size.
+void addPeaks(const std::vector<Peak>& peaks, int width, int height, const Lobe& lobe,
+              const std::vector<double>& u, const std::vector<double>& v, double* values);
+
+} // namespace ibl

@@ -1,0 +1,151 @@
+#include "convolve/plan.h"
+
+#include "convolve/narrow.h"
+#include "core/parallel.h"
+#include "panorama/conventions.h"
+#include "panorama/layouts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace ibl {
+namespace {
+
+/// Above this degree the Legendre sums, which grow with its cube, cost more than a core in space.
+constexpr int kMostDegree = 768;
+/// Coefficients known beyond it, from which the tail's envelope is read.
+constexpr int kTailBands = 64;
+
+/// Nanoseconds on one core, measured.
+struct Costs {
+    static constexpr double kLegendre = 0.35; ///< a cubed degree, analysis or synthesis
+    static constexpr double kGrid = 100;      ///< a squared degree: transforms of the synthesis
+    static constexpr double kPeak = 15;       ///< a peak and a texel
+};
+
+/// Outweighs any cost: a lobe whose error cannot be kept within kMostDegree.
+constexpr double kUnmet = 1e15;
+
+double texelsOf(const PrefilterRequest& request) {
+    const double n = request.size;
+    return isCubeFamily(request.layout) || request.layout == Layout::exrCube ? 6 * n * n
+                                                                             : 2 * n * n;
+}
+
+/// Cost of the plan's harmonic lobes when each needs degree degrees[i] and `peaks` are split.
+double costOf(const std::vector<int>& degrees, std::span<const PrefilterRequest> requests,
+              int peaks) {
+    const auto cube = [](double d) { return d * d * d; };
+    double cost = 0;
+    int most = 0;
+    for (std::size_t i = 0; i < degrees.size(); ++i) {
+        if (degrees[i] < 0) continue;
+        const double d = degrees[i];
+        if (d > kMostDegree) cost += kUnmet;
+        cost += Costs::kLegendre * cube(d) + Costs::kGrid * d * d;
+        cost += Costs::kPeak * peaks * texelsOf(requests[i]);
+        most = std::max(most, degrees[i]);
+    }
+    return cost + Costs::kLegendre * cube(most);
+}
+
+/// Whether what harmonics cannot hold of a lobe is its core. (Else it is its horizon, and only more
+/// peaks help.)
+bool isNarrow(const Lobe& lobe) {
+    return lobeWidth(lobe) < 0.1;
+}
+
+/// A degree that the core's reach, about 40 / degree, keeps within a dozen pixels.
+int narrowDegree(int probe_width) {
+    return std::clamp(probe_width / 2, 96, 1024);
+}
+
+} // namespace
+
+std::vector<double> tailMaximum(const std::vector<double>& k) {
+    std::vector<double> tail(k.size());
+    // The envelope beyond the table is not above that of its last few entries.
+    double most = 0;
+    for (std::size_t i = k.size() - std::min<std::size_t>(k.size(), 8); i < k.size(); ++i) {
+        most = std::max(most, std::abs(k[i]));
+    }
+    for (std::size_t l = k.size(); l-- > 0;) {
+        tail[l] = most;
+        most = std::max(most, std::abs(k[l]));
+    }
+    return tail;
+}
+
+int leastDegree(const std::vector<double>& k, int most, double allowed,
+                const std::vector<double>& energy_beyond) {
+    const std::vector<double> tail = tailMaximum(k);
+    for (int l = 1; l <= most; ++l) {
+        const std::size_t e = std::min<std::size_t>(l, energy_beyond.size() - 1);
+        if (tail[l] * std::sqrt(energy_beyond[e]) <= allowed) return l;
+    }
+    return most + 1;
+}
+
+double referenceNorm(const ProbeStatistics& probe, const std::vector<double>& k) {
+    double kernel = 0; // int K^2
+    for (std::size_t l = 0; l < k.size(); ++l)
+        kernel += (2.0 * l + 1) / (4 * kPi) * k[l] * k[l];
+    double mean = 0; // norm of the constant field of the mean
+    for (const double a : probe.absolute)
+        mean += a * a / (4 * kPi);
+    // Pixels are taken as apart from one another, which for non-negative probes only makes it less.
+    const double spots = kernel * probe.squares;
+    return std::min(std::sqrt(std::max(mean, spots)), 4 * std::sqrt(mean));
+}
+
+Plan makePlan(const ProbeStatistics& probe, std::span<const PrefilterRequest> requests,
+              double max_error, int probe_width, int threads) {
+    Plan plan;
+    plan.lobes.resize(requests.size());
+    std::vector<double> allowed(requests.size());
+    parallelFor(requests.size(), threads, [&](std::size_t i) {
+        LobePlan& lobe = plan.lobes[i];
+        if (isMirror(requests[i].lobe)) {
+            lobe.method = Method::area;
+            return;
+        }
+        lobe.k = zonalCoefficients(requests[i].lobe, kMostDegree + kTailBands);
+        allowed[i] = 0.5 * max_error * referenceNorm(probe, lobe.k);
+    });
+
+    double best = std::numeric_limits<double>::infinity();
+    std::vector<int> chosen(requests.size(), -1);
+    for (const int peaks : {0, 1, 4, 16, 64, 256, kMostPeaks}) {
+        const double threshold = peakThreshold(probe, peaks);
+        const std::vector<double> energy{clampedEnergy(probe, threshold)};
+        std::vector<int> degrees(requests.size(), -1);
+        for (std::size_t i = 0; i < requests.size(); ++i) {
+            if (plan.lobes[i].method == Method::area) continue;
+            degrees[i] = leastDegree(plan.lobes[i].k, kMostDegree, allowed[i], energy);
+            if (degrees[i] > kMostDegree && isNarrow(requests[i].lobe)) degrees[i] = -1;
+        }
+        const double cost = costOf(degrees, requests, peaks);
+        if (cost >= best) continue;
+        best = cost;
+        chosen = degrees;
+        plan.peaks = peaks;
+        plan.threshold = threshold;
+        if (energy[0] == 0) break;
+    }
+    for (std::size_t i = 0; i < requests.size(); ++i) {
+        LobePlan& lobe = plan.lobes[i];
+        if (lobe.method == Method::area) continue;
+        lobe.degree = std::min(chosen[i], kMostDegree);
+        if (chosen[i] < 0) {
+            lobe.method = Method::narrow;
+            lobe.degree = narrowDegree(probe_width);
+            lobe.k = smoothCoefficients(requests[i].lobe, lobe.degree);
+        } else {
+            plan.degree = std::max(plan.degree, lobe.degree);
+        }
+    }
+    return plan;
+}
+
+} // namespace ibl

@@ -1,0 +1,56 @@
+// Which band limit, how many peaks, which method: decided before any work, from the asked error.
+//
+// Cutting K at degree B leaves, over the sphere (Parseval),
+//
+//     || (K - K_B) * L ||^2 = sum over l > B of k_l^2 S_l
+//                          <= max over l > B of k_l^2 * (int L^2 - sum over l <= B of S_l),
+//
+// S_l the energy of the probe's degree l. This bound needs no model of the probe; before the
+// analysis its last factor is taken as the whole int L^2. Splitting peaks off makes that smaller,
+// at the price of (texels x peaks) evaluations of the lobe. The cheapest of a few numbers of peaks
+// is taken, by the costs measured in tests/bench/convolve.
+#pragma once
+
+#include "convolve/peaks.h"
+#include "convolve/prefilter.h"
+
+#include <span>
+#include <vector>
+
+namespace ibl {
+
+enum class Method {
+    area,      ///< mirrors: the area-filtered probe
+    harmonics, ///< a band limit, and the peaks directly
+    narrow,    ///< a smooth part in harmonics and a core in space (narrow.h)
+};
+
+struct LobePlan {
+    Method method = Method::harmonics;
+    int degree = 0;
+    std::vector<double> k; ///< coefficients; more than `degree` of them for Method::harmonics
+};
+
+struct Plan {
+    double threshold = 0; ///< for the analysis that Method::harmonics uses
+    int peaks = 0;
+    int degree = 0; ///< of that analysis
+    std::vector<LobePlan> lobes;
+};
+
+Plan makePlan(const ProbeStatistics& probe, std::span<const PrefilterRequest> requests,
+              double max_error, int probe_width, int threads);
+
+/// Least degree, up to `most`, whose truncation bound is at most `allowed`; `energy_beyond(B)` is
+/// the probe's energy beyond degree B. `most` + 1 when there is none.
+int leastDegree(const std::vector<double>& k, int most, double allowed,
+                const std::vector<double>& energy_beyond);
+
+/// max |k_i| over i > l, for l = 0 .. k.size() - 1; the last entries stand for all that follow.
+std::vector<double> tailMaximum(const std::vector<double>& k);
+
+/// The norm over the sphere that errors are measured against: not more than that of the result, and
+/// for suns, whose result is a spot, a few times the mean, so that the dark around it is right too.
+double referenceNorm(const ProbeStatistics& probe, const std::vector<double>& k);
+
+} // namespace ibl
