@@ -61,7 +61,8 @@ void toLinear(Image& image, const ImageSpec& spec) {
     const bool premultiply =
         image.channels == 4 && spec.get_int_attribute("oiio:UnassociatedAlpha") != 0;
     std::array<float, 256> table{};
-    for (std::size_t i = 0; i < 256; ++i) table[i] = srgbToLinear(static_cast<float>(i) / 255);
+    for (std::size_t i = 0; i < 256; ++i)
+        table[i] = srgbToLinear(static_cast<float>(i) / 255);
     const std::size_t pixels = static_cast<std::size_t>(image.width) * image.height;
     float* p = image.pixels.data();
     for (std::size_t i = 0; i < pixels; ++i, p += image.channels) {
@@ -170,7 +171,8 @@ WriteLosses write(const std::string& path, const Image& image, const std::string
     ImageSpec spec(image.width, image.height, channels, type);
     spec.attribute("oiio:ColorSpace", tiff ? "Linear" : "sRGB");
     if (tiff) spec.attribute("compression", "zip");
-    spec.attribute("DateTime", ""); // or it would be now
+    if (as_half) spec.attribute("tiff:half", 1); // otherwise it would be widened to float
+    spec.attribute("DateTime", "");              // or it would be now
     if (!out->open(path, spec)) {
         throw std::runtime_error("cannot be written (" + firstLine(out->geterror()) + ")");
     }

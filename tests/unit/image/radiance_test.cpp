@@ -203,7 +203,8 @@ TEST_F(Radiance, ExtremeValuesAreClampedCarriedAndCounted) {
 }
 
 TEST_F(Radiance, OutsideReaderAndWriterAgree) {
-    expectNear(readImage(testdata("gradient.hdr")).image, gradientPixels(), 0, 4.0F / 256);
+    // Its writer truncates: up to a whole step below, of 8 / 256 where red is 4.
+    expectNear(readImage(testdata("gradient.hdr")).image, gradientPixels(), 0, 8.0F / 256);
     const Image image = testPixels(64, 32);
     writeOne(path("a.hdr"), image);
     run("oiiotool " + path("a.hdr") + " -d float -o " + path("a.exr"));
