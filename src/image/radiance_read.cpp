@@ -292,6 +292,13 @@ ImageFile readRadiance(std::span<const std::uint8_t> bytes, const std::string& n
     file.exposure = header.exposure;
     file.colour_correction = header.colour_correction;
     file.notes = std::move(header.notes);
+    if (file.exposure != 1 || file.colour_correction != Imath::V3d(1)) {
+        char text[128];
+        std::snprintf(text, sizeof text, "EXPOSURE %g and COLORCORR %g %g %g are divided out",
+                      file.exposure, file.colour_correction.x, file.colour_correction.y,
+                      file.colour_correction.z);
+        file.notes.emplace_back(text);
+    }
     return file;
 }
 

@@ -98,7 +98,7 @@ TEST(Specular, Refusals) {
     refused({}, "--roughness");
     refused({"--roughness", "-0.1"}, "--roughness");
     refused({"--roughness", "1.5"}, "--roughness");
-    refused({"--roughness", "nan"}, "--roughness");
+    refused({"--roughness", "nan"}, "roughness");
     refused({"--kernel", "phong", "--roughness", "0.5"}, "--exponent");
     refused({"--exponent", "5"}, "--roughness");
     refused({"--kernel", "phong", "--exponent", "-1"}, "--exponent");
