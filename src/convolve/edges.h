@@ -68,43 +68,62 @@ double sinhQuadrature(double from, double to, double scale, double longest, cons
 
 } // namespace edges
 
+/// Where a kernel's Q is not 0, and how fast it varies there: over `variation` radians or more, or
+/// in proportion to the distance from the axis. A horizon, where Q has a kink, is the disc's rim.
+struct Disc {
+    double radius; ///< at most pi / 2
+    double variation;
+};
+
 /// int Q dchi along the parallel at colatitude theta, eastwards over azimuths from axis.psi + from
-/// to axis.psi + to (within a turn). Q takes h = sin^2(t/2) and varies over `longest` radians or
-/// more, or in proportion to t.
+/// to axis.psi + to (at most a turn, within two of 0). Q takes h = sin^2(t/2).
 template <class Q>
-double parallelIntegral(const Q& q, const Axis& axis, double theta, double from, double to,
-                        double longest) {
+double parallelIntegral(const Q& q, const Disc& disc, const Axis& axis, double theta, double from,
+                        double to) {
     const double sin_e = std::sin(theta), cos_e = std::cos(theta);
     const double near = std::sin(0.5 * (theta - axis.theta)), h0 = near * near;
-    const double s2 = sin_e * axis.sin_theta;
-    if (sin_e < 1e-15) return 0; // a pole
+    const double s2 = sin_e * axis.sin_theta, rim = std::sin(0.5 * disc.radius);
+    const double room = rim * rim - h0; // of s2 sin^2(delta/2)
+    if (sin_e < 1e-15 || room <= 0) return 0;
+    const double reach = room >= s2 ? std::numbers::pi : 2 * std::asin(std::sqrt(room / s2));
     const double scale =
         std::clamp(2 * std::abs(near) / std::sqrt(std::max(s2, 1e-300)), 1e-14, 1e3);
+    const double longest = std::min(disc.variation / sin_e, 0.6);
     // x . (p x dp/dpsi) = sin e (sin e cos x - cos e sin x cos delta)
     //                   = sin e (sin(e - x) + 2 cos e sin x sin^2(delta/2))
     const double sin_gap = std::sin(theta - axis.theta);
-    return edges::sinhQuadrature(
-        from, to, scale, std::min(longest / sin_e, 0.6), [&](double delta) {
-            const double half = std::sin(0.5 * delta), half2 = half * half;
-            const double h = std::min(1.0, h0 + s2 * half2);
-            const double numerator = sin_e * (sin_gap + 2 * cos_e * axis.sin_theta * half2);
-            return q(h) * numerator / std::max(4 * h * (1 - h), 1e-300);
-        });
+    const auto integrand = [&](double delta) {
+        const double half = std::sin(0.5 * delta), half2 = half * half;
+        const double h = std::min(1.0, h0 + s2 * half2);
+        const double numerator = sin_e * (sin_gap + 2 * cos_e * axis.sin_theta * half2);
+        return q(h) * numerator / std::max(4 * h * (1 - h), 1e-300);
+    };
+    double sum = 0;
+    for (int turn = -1; turn <= 1; ++turn) {
+        const double shift = 2 * std::numbers::pi * turn;
+        const double low = std::max(from - shift, -reach), high = std::min(to - shift, reach);
+        if (low < high) sum += edges::sinhQuadrature(low, high, scale, longest, integrand);
+    }
+    return sum;
 }
 
 /// int Q dchi along the meridian at azimuth axis.psi + offset, northwards from colatitude `bottom`
 /// to `top` < bottom.
 template <class Q>
-double meridianIntegral(const Q& q, const Axis& axis, double offset, double top, double bottom,
-                        double longest) {
-    const double half = std::sin(0.5 * offset);
-    const double distance = std::abs(axis.sin_theta * std::sin(offset));
-    // The nearest point of the meridian's great circle is at tan e = tan x cos offset.
-    const double nearest = std::atan2(axis.sin_theta * std::cos(offset), axis.cos_theta);
-    const double numerator = axis.sin_theta * std::sin(offset);
-    if (numerator == 0) return 0;
+double meridianIntegral(const Q& q, const Disc& disc, const Axis& axis, double offset, double top,
+                        double bottom) {
+    const double half = std::sin(0.5 * offset), numerator = axis.sin_theta * std::sin(offset);
+    const double distance = std::asin(std::min(1.0, std::abs(numerator)));
+    if (numerator == 0 || distance >= disc.radius) return 0;
+    // The great circle is nearest at tan e = tan x cos offset, and leaves the disc after w:
+    // cos radius = cos distance cos w.
+    double nearest = std::atan2(axis.sin_theta * std::cos(offset), axis.cos_theta);
+    if (nearest < -0.5 * std::numbers::pi) nearest += 2 * std::numbers::pi; // past the south pole
+    const double w = std::acos(std::cos(disc.radius) / std::cos(distance));
+    const double low = std::max(top - nearest, -w), high = std::min(bottom - nearest, w);
+    if (low >= high) return 0;
     const double scale = std::max(distance, 1e-14);
-    return edges::sinhQuadrature(top - nearest, bottom - nearest, scale, longest, [&](double s) {
+    return edges::sinhQuadrature(low, high, scale, disc.variation, [&](double s) {
         const double theta = nearest + s;
         const double gap = std::sin(0.5 * (theta - axis.theta));
         const double h =

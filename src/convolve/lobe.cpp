@@ -25,8 +25,8 @@ double alphaOf(const Lobe& lobe) {
 ///
 /// and for beta -> 0 that cancels; there (alpha near 1) the integrand is smooth and eight Gauss
 /// points are exact to rounding.
-double ggxCapIntegral(double alpha, double from, double to) {
-    const double a2 = alpha * alpha, beta = 1 - a2;
+double ggxCapIntegral(double a2, double from, double to) {
+    const double beta = 1 - a2;
     if (beta < 0.5) {
         const GaussRule& rule = gaussRule(16);
         double sum = 0;
@@ -139,26 +139,33 @@ double lobeValue(const Lobe& lobe, double cos_t) {
 }
 
 double lobeIntegral(const Lobe& lobe) {
-    if (lobe.kernel == Kernel::ggx) return ggxCapIntegral(alphaOf(lobe), 0, 0.5);
+    if (lobe.kernel == Kernel::ggx) return ggxCapIntegral(alphaOf(lobe) * alphaOf(lobe), 0, 0.5);
     return 2 * kPi / (exponentOf(lobe) + 1);
 }
 
-double lobeMassBeyond(const Lobe& lobe, double h) {
-    if (h >= 0.5) return 0;
-    if (isMirror(lobe)) return h > 0 ? 0 : 1;
-    if (lobe.kernel == Kernel::ggx) {
-        const double alpha = alphaOf(lobe);
-        return ggxCapIntegral(alpha, h, 0.5) / ggxCapIntegral(alpha, 0, 0.5);
+LobeMassBeyond::LobeMassBeyond(const Lobe& lobe) : kernel_(lobe.kernel) {
+    if (kernel_ == Kernel::ggx) {
+        alpha_squared_ = alphaOf(lobe) * alphaOf(lobe);
+        scale_ = isMirror(lobe) ? 1 : 1 / lobeIntegral(lobe);
+    } else {
+        exponent_ = exponentOf(lobe);
     }
-    return std::exp((exponentOf(lobe) + 1) * std::log1p(-2 * h));
+}
+
+double LobeMassBeyond::operator()(double h) const {
+    if (h >= 0.5) return 0;
+    if (kernel_ != Kernel::ggx) return std::exp((exponent_ + 1) * std::log1p(-2 * h));
+    if (alpha_squared_ < 1e-20) return h > 0 ? 0 : 1;
+    return scale_ * ggxCapIntegral(alpha_squared_, h, 0.5);
 }
 
 double lobeWidth(const Lobe& lobe) {
     if (isMirror(lobe)) return 0;
+    const LobeMassBeyond mass_beyond(lobe);
     double low = -80, high = -1; // log2 h; the mass beyond falls from 1 to 0 between them
     for (int i = 0; i < 60; ++i) {
         const double mid = 0.5 * (low + high);
-        (lobeMassBeyond(lobe, std::exp2(mid)) > 0.5 ? low : high) = mid;
+        (mass_beyond(std::exp2(mid)) > 0.5 ? low : high) = mid;
     }
     return 2 * std::asin(std::sqrt(std::exp2(low)));
 }

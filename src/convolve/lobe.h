@@ -35,7 +35,17 @@ double lobeIntegral(const Lobe& lobe);
 
 /// The part of the integral of K, in [0, 1], that lies farther than t from the axis, where
 /// h = sin^2(t/2). Mirrors: 0 for h > 0.
-double lobeMassBeyond(const Lobe& lobe, double h);
+class LobeMassBeyond {
+public:
+    explicit LobeMassBeyond(const Lobe& lobe);
+    double operator()(double h) const;
+
+private:
+    Kernel kernel_;
+    double alpha_squared_ = 0;
+    double exponent_ = 0;
+    double scale_ = 1; ///< 1 / integral
+};
 
 /// Angle (radians) within which half of the lobe's integral lies: its width.
 double lobeWidth(const Lobe& lobe);

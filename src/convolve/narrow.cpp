@@ -64,8 +64,8 @@ std::vector<double> smoothCoefficients(const Lobe& lobe, int degree) {
 }
 
 double LobeCore::operator()(double h) const {
-    if (smooth_mass.empty()) return -lobeMassBeyond(lobe, h);
-    const double within = h <= inner_h ? inner_mass : 1 - lobeMassBeyond(lobe, h);
+    if (smooth_mass.empty()) return -mass_beyond(h);
+    const double within = h <= inner_h ? inner_mass : 1 - mass_beyond(h);
     // Cubic Lagrange interpolation of the smooth mass, which is even in t.
     const double x = 2 * std::asin(std::sqrt(h)) / step;
     const std::size_t i = static_cast<std::size_t>(x);
@@ -80,13 +80,12 @@ double LobeCore::operator()(double h) const {
 
 LobeCore makeCore(const Lobe& lobe, const std::vector<double>& smooth, double inner,
                   double tolerance) {
-    LobeCore core;
-    core.lobe = lobe;
+    LobeCore core{LobeMassBeyond(lobe), {0, 0}, 0, 0, 0, {}};
     core.inner_h = std::sin(0.5 * inner) * std::sin(0.5 * inner);
-    core.inner_mass = inner > 0 ? 1 - lobeMassBeyond(lobe, core.inner_h) : 0;
+    core.inner_mass = inner > 0 ? 1 - core.mass_beyond(core.inner_h) : 0;
     const double degree = static_cast<double>(smooth.size()) - 1;
     core.step = 1 / (kTableDensity * degree);
-    core.variation = 16 / degree;
+    core.disc.variation = 16 / degree;
     const int count = static_cast<int>(std::min(kTableReach / degree, 0.5 * kPi) / core.step);
     core.smooth_mass.resize(count + 3);
     for (int i = 0; i < count + 3; ++i)
@@ -97,23 +96,18 @@ LobeCore makeCore(const Lobe& lobe, const std::vector<double>& smooth, double in
         if (std::abs(core(s * s)) > tolerance) break;
         --last;
     }
-    core.radius = (last + 1) * core.step;
+    core.disc.radius = (last + 1) * core.step;
     return core;
 }
 
 LobeCore makeWholeCore(const Lobe& lobe) {
-    LobeCore core;
-    core.lobe = lobe;
-    core.radius = 0.5 * kPi;
-    core.variation = 0.2;
-    return core;
+    return {LobeMassBeyond(lobe), {0.5 * kPi, 0.2}, 0, 0, 0, {}};
 }
 
 void addCore(const LobeCore& core, const Image& probe, double scale, const Axis& axis,
              double* sum) {
     const int w = probe.width, h = probe.height;
     const double row_step = kPi / h, column_step = 2 * kPi / w, factor = scale / (2 * kPi);
-    const double longest = core.variation;
     const Accumulator out{probe, sum};
     const int own_row = std::clamp(static_cast<int>(axis.theta / row_step), 0, h - 1);
     const int own_column = static_cast<int>(std::floor(axis.psi / column_step));
@@ -124,13 +118,13 @@ void addCore(const LobeCore& core, const Image& probe, double scale, const Axis&
     for (int c = 0; c < 3; ++c)
         sum[c] += scale * mass * own[c];
 
-    const int first = std::max(0, static_cast<int>((axis.theta - core.radius) / row_step));
-    const int last = std::min(h - 1, static_cast<int>((axis.theta + core.radius) / row_step));
+    const int first = std::max(0, static_cast<int>((axis.theta - core.disc.radius) / row_step));
+    const int last = std::min(h - 1, static_cast<int>((axis.theta + core.disc.radius) / row_step));
     for (int j = first; j <= last; ++j) {
         const double top = row_step * j, bottom = row_step * (j + 1);
         // Parallel between rows j and j + 1.
         if (j < last) {
-            const double reach = halfWidthAt(axis, bottom, core.radius);
+            const double reach = halfWidthAt(axis, bottom, core.disc.radius);
             const int west = static_cast<int>(std::floor((axis.psi - reach) / column_step));
             const int count = std::min(
                 w, static_cast<int>(std::floor((axis.psi + reach) / column_step)) - west + 1);
@@ -139,16 +133,17 @@ void addCore(const LobeCore& core, const Image& probe, double scale, const Axis&
                 const float *above = probe.at(column, j), *below = probe.at(column, j + 1);
                 if (Accumulator::same(above, below)) continue;
                 const double integral =
-                    parallelIntegral(core, axis, bottom, i * column_step - axis.psi,
-                                     (i + 1) * column_step - axis.psi, longest);
+                    parallelIntegral(core, core.disc, axis, bottom, i * column_step - axis.psi,
+                                     (i + 1) * column_step - axis.psi);
                 out.add(above, below, factor * integral);
             }
         }
         // Meridians between the columns of row j.
-        const double widest = std::max(
-            {halfWidthAt(axis, top, core.radius), halfWidthAt(axis, bottom, core.radius),
-             axis.theta > top && axis.theta < bottom ? halfWidthAt(axis, axis.theta, core.radius)
-                                                     : 0.0});
+        const double widest = std::max({halfWidthAt(axis, top, core.disc.radius),
+                                        halfWidthAt(axis, bottom, core.disc.radius),
+                                        axis.theta > top && axis.theta < bottom
+                                            ? halfWidthAt(axis, axis.theta, core.disc.radius)
+                                            : 0.0});
         if (widest <= 0) continue;
         const int west = static_cast<int>(std::floor((axis.psi - widest) / column_step)) - 1;
         const int count =
@@ -158,8 +153,8 @@ void addCore(const LobeCore& core, const Image& probe, double scale, const Axis&
                         *right = probe.at(wrappedColumn(i, w), j);
             if (Accumulator::same(left, right)) continue;
             out.add(left, right,
-                    factor * meridianIntegral(core, axis, i * column_step - axis.psi, top, bottom,
-                                              longest));
+                    factor * meridianIntegral(core, core.disc, axis, i * column_step - axis.psi,
+                                              top, bottom));
         }
     }
 }

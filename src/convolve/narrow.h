@@ -28,12 +28,11 @@ std::vector<double> smoothCoefficients(const Lobe& lobe, int degree);
 
 /// Q = M - M(pi) of K_core, and how far from the axis it reaches.
 struct LobeCore {
-    Lobe lobe;
+    LobeMassBeyond mass_beyond;
+    Disc disc;                       ///< beyond its radius Q is negligible
     double inner_mass = 0;           ///< mass within inner_h, left to the area-filtered map
     double inner_h = 0;              ///< sin^2(rho/2) of the innermost part
-    double radius = 0;               ///< radians beyond which Q is negligible
     double step = 0;                 ///< of the table
-    double variation = 0;            ///< radians over which the smooth part varies
     std::vector<double> smooth_mass; ///< M_smooth at t = i step; none: it is M(pi), 1
 
     /// Q at h = sin^2(t/2) within the radius.

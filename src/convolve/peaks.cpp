@@ -17,18 +17,37 @@ double magnitude(const float* pixel, double scale) {
                              std::abs(double{pixel[2]})});
 }
 
-/// A peak's rectangle and the axis-independent part of its Gauss points.
+V3d directionOf(double cos_theta, double psi) {
+    const double s = std::sqrt(std::max(0.0, 1 - cos_theta * cos_theta));
+    return {s * std::cos(psi), s * std::sin(psi), cos_theta};
+}
+
+/// Gauss points over a rectangle in (psi, cos theta), with the pole along +Z.
+struct RectanglePoints {
+    std::vector<V3d> directions;
+    std::vector<double> weights; ///< summing to the solid angle
+};
+
 struct PeakRectangle {
     double top, bottom; ///< colatitudes
     double west, east;  ///< azimuths psi
     double size;        ///< the longer edge, radians
-    double solid_angle;
-    V3d points[4]; ///< 2 x 2 Gauss points in (psi, cos theta), in the (z = +Y pole) frame
+    RectanglePoints coarse, fine;
 };
 
-V3d directionOf(double cos_theta, double psi) {
-    const double s = std::sqrt(std::max(0.0, 1 - cos_theta * cos_theta));
-    return {s * std::cos(psi), s * std::sin(psi), cos_theta};
+RectanglePoints pointsIn(const PeakRectangle& r, double solid_angle, int n) {
+    const GaussRule& rule = gaussRule(n);
+    const double z0 = std::cos(r.top), z1 = std::cos(r.bottom);
+    RectanglePoints points;
+    for (int b = 0; b < n; ++b) {
+        for (int a = 0; a < n; ++a) {
+            const double x = 0.5 + 0.5 * rule.nodes[a], y = 0.5 + 0.5 * rule.nodes[b];
+            points.directions.push_back(
+                directionOf(z0 + (z1 - z0) * y, r.west + (r.east - r.west) * x));
+            points.weights.push_back(0.25 * rule.weights[a] * rule.weights[b] * solid_angle);
+        }
+    }
+    return points;
 }
 
 PeakRectangle rectangleOf(const Peak& peak, int width, int height) {
@@ -37,29 +56,26 @@ PeakRectangle rectangleOf(const Peak& peak, int width, int height) {
     r.bottom = kPi * (peak.row + 1) / height;
     r.west = 2 * kPi * peak.column / width;
     r.east = 2 * kPi * (peak.column + 1) / width;
-    r.solid_angle = latlongPixelSolidAngle(width, height, peak.row);
     r.size = std::max(kPi / height, 2 * kPi / width * std::sin(kPi * (peak.row + 0.5) / height));
-    const double z0 = std::cos(r.top), z1 = std::cos(r.bottom), g = 0.5 / std::sqrt(3.0);
-    for (int i = 0; i < 4; ++i) {
-        const double a = 0.5 + (i % 2 ? g : -g), b = 0.5 + (i / 2 ? g : -g);
-        r.points[i] = directionOf(z0 + (z1 - z0) * b, r.west + (r.east - r.west) * a);
-    }
+    const double solid_angle = latlongPixelSolidAngle(width, height, peak.row);
+    r.coarse = pointsIn(r, solid_angle, 2);
+    r.fine = pointsIn(r, solid_angle, 4);
     return r;
 }
 
 /// The lobe's normalised mass over the rectangle, by its edges.
-double massByEdges(const Lobe& lobe, const Axis& axis, const PeakRectangle& r) {
-    const auto q = [&](double h) { return -lobeMassBeyond(lobe, h); };
+double massByEdges(const LobeMassBeyond& mass_beyond, const Axis& axis, const PeakRectangle& r) {
+    const auto q = [&](double h) { return -mass_beyond(h); };
     // The rectangle's azimuths about the axis's, as near as can be.
     const double turn = 2 * kPi * std::round((0.5 * (r.west + r.east) - axis.psi) / (2 * kPi));
     const double west = r.west - turn - axis.psi, east = r.east - turn - axis.psi;
     const bool inside = axis.theta > r.top && axis.theta < r.bottom && west < 0 && east > 0;
-    constexpr double kLongest = 0.2;
-    const double ring = parallelIntegral(q, axis, r.bottom, west, east, kLongest) -
-                        parallelIntegral(q, axis, r.top, west, east, kLongest);
+    constexpr Disc disc{0.5 * kPi, 0.2};
+    const double ring = parallelIntegral(q, disc, axis, r.bottom, west, east) -
+                        parallelIntegral(q, disc, axis, r.top, west, east);
     // Counter-clockwise: the east side northwards, the west side southwards.
-    const double sides = meridianIntegral(q, axis, east, r.top, r.bottom, kLongest) -
-                         meridianIntegral(q, axis, west, r.top, r.bottom, kLongest);
+    const double sides = meridianIntegral(q, disc, axis, east, r.top, r.bottom) -
+                         meridianIntegral(q, disc, axis, west, r.top, r.bottom);
     return (inside ? 1 : 0) + (ring + sides) / (2 * kPi);
 }
 
@@ -71,17 +87,28 @@ double scaleAt(const Lobe& lobe, double width, double t) {
     return std::min(smooth, to_horizon);
 }
 
-/// The lobe's normalised mass over the rectangle: by four Gauss points where the lobe is smooth
-/// over it (their error is 4e-8 of it at most), else by its edges.
-double peakMass(const PeakRectangle& r, const Lobe& lobe, double lobe_width, double norm,
-                const Axis& axis, const V3d& x) {
-    const double t = std::acos(std::clamp(x.dot(r.points[0]), -1.0, 1.0));
+/// A lobe as the peaks need it.
+struct PeakLobe {
+    Lobe lobe;
+    LobeMassBeyond mass_beyond;
+    double width;
+    double norm; ///< 1 / integral
+};
+
+/// The lobe's normalised mass over the rectangle: by Gauss points where the lobe is smooth over it
+/// (2 x 2 are off by (size / scale)^4 / 4320 of it, 4 x 4 by (size / scale)^8 / 1.8e10), else by
+/// its edges.
+double peakMass(const PeakRectangle& r, const PeakLobe& lobe, const Axis& axis, const V3d& x) {
+    const double t = std::acos(std::clamp(x.dot(r.coarse.directions[0]), -1.0, 1.0));
     if (t > 0.5 * kPi + 2 * r.size) return 0;
-    if (r.size > 0.1 * scaleAt(lobe, lobe_width, t)) return massByEdges(lobe, axis, r);
+    const double scale = scaleAt(lobe.lobe, lobe.width, t);
+    if (r.size > 0.5 * scale) return massByEdges(lobe.mass_beyond, axis, r);
+    const RectanglePoints& points = r.size > 0.1 * scale ? r.fine : r.coarse;
     double mass = 0;
-    for (const V3d& point : r.points)
-        mass += lobeValue(lobe, x.dot(point));
-    return 0.25 * r.solid_angle * norm * mass;
+    for (std::size_t i = 0; i < points.weights.size(); ++i) {
+        mass += points.weights[i] * lobeValue(lobe.lobe, x.dot(points.directions[i]));
+    }
+    return lobe.norm * mass;
 }
 
 void addPixel(ProbeStatistics& part, const Candidate& pixel) {
@@ -173,12 +200,12 @@ void addPeaks(const std::vector<Peak>& peaks, int width, int height, const Lobe&
     std::vector<PeakRectangle> rectangles;
     for (const Peak& peak : peaks)
         rectangles.push_back(rectangleOf(peak, width, height));
-    const double norm = 1 / lobeIntegral(lobe), lobe_width = lobeWidth(lobe);
+    const PeakLobe peak_lobe{lobe, LobeMassBeyond(lobe), lobeWidth(lobe), 1 / lobeIntegral(lobe)};
     for (std::size_t i = 0; i < u.size(); ++i) {
         const Axis axis = makeAxis(u[i], v[i]);
         const V3d x = directionOf(axis.cos_theta, axis.psi);
         for (std::size_t p = 0; p < peaks.size(); ++p) {
-            const double mass = peakMass(rectangles[p], lobe, lobe_width, norm, axis, x);
+            const double mass = peakMass(rectangles[p], peak_lobe, axis, x);
             for (int c = 0; c < 3; ++c)
                 values[3 * i + c] += peaks[p].excess[c] * mass;
         }

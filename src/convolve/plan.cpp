@@ -1,6 +1,7 @@
 #include "convolve/plan.h"
 
 #include "convolve/narrow.h"
+#include "convolve/texels.h"
 #include "core/parallel.h"
 #include "panorama/conventions.h"
 #include "panorama/layouts.h"
@@ -21,7 +22,8 @@ constexpr int kTailBands = 64;
 struct Costs {
     static constexpr double kLegendre = 0.35; ///< a cubed degree, analysis or synthesis
     static constexpr double kGrid = 100;      ///< a squared degree: transforms of the synthesis
-    static constexpr double kPeak = 15;       ///< a peak and a texel
+    static constexpr double kPeak = 40;       ///< a peak and a point, by Gauss points
+    static constexpr double kPeakEdges = 800; ///< the same by edges, where lobes are narrow
 };
 
 /// Outweighs any cost: a lobe whose error cannot be kept within kMostDegree.
@@ -33,9 +35,10 @@ double texelsOf(const PrefilterRequest& request) {
                                                                              : 2 * n * n;
 }
 
-/// Cost of the plan's harmonic lobes when each needs degree degrees[i] and `peaks` are split.
+/// Cost of the plan's harmonic lobes when each needs degree degrees[i] and `peaks` are split from a
+/// probe whose pixels are `pixel` radians wide.
 double costOf(const std::vector<int>& degrees, std::span<const PrefilterRequest> requests,
-              int peaks) {
+              int peaks, double pixel) {
     const auto cube = [](double d) { return d * d * d; };
     double cost = 0;
     int most = 0;
@@ -44,7 +47,10 @@ double costOf(const std::vector<int>& degrees, std::span<const PrefilterRequest>
         const double d = degrees[i];
         if (d > kMostDegree) cost += kUnmet;
         cost += Costs::kLegendre * cube(d) + Costs::kGrid * d * d;
-        cost += Costs::kPeak * peaks * texelsOf(requests[i]);
+        const Footprint footprint = footprintOf(requests[i].lobe, texelAngle(requests[i]));
+        const bool smooth = 2 * pixel < lobeWidth(requests[i].lobe);
+        cost += (smooth ? Costs::kPeak : Costs::kPeakEdges) * peaks * texelsOf(requests[i]) *
+                footprint.samples * footprint.samples;
         most = std::max(most, degrees[i]);
     }
     return cost + Costs::kLegendre * cube(most);
@@ -125,7 +131,7 @@ Plan makePlan(const ProbeStatistics& probe, std::span<const PrefilterRequest> re
             degrees[i] = leastDegree(plan.lobes[i].k, kMostDegree, allowed[i], energy);
             if (degrees[i] > kMostDegree && isNarrow(requests[i].lobe)) degrees[i] = -1;
         }
-        const double cost = costOf(degrees, requests, peaks);
+        const double cost = costOf(degrees, requests, peaks, 2 * kPi / probe_width);
         if (cost >= best) continue;
         best = cost;
         chosen = degrees;

@@ -71,27 +71,6 @@ double scaleOf(const Image& probe, int threads) {
     return most > 0 ? std::ldexp(1.0, -std::ilogb(most)) : 1;
 }
 
-/// Where a lobe's diameter (that of half its mass) is two texels or more, a texel is its centre's
-/// value; where it is one texel or less, the mean over the footprint; in between, the mean over the
-/// footprint shrunk in proportion. Points stand closer than the lobe is wide, up to kMostSamples.
-constexpr int kMostSamples = 16;
-
-Footprint footprintOf(const Lobe& lobe, double texel) {
-    const double diameter = 2 * lobeWidth(lobe);
-    Footprint footprint;
-    footprint.scale = std::clamp(2 - diameter / texel, 0.0, 1.0);
-    if (footprint.scale > 0) {
-        const double wanted = std::ceil(1 + 3 * footprint.scale * texel / diameter);
-        footprint.samples = static_cast<int>(std::clamp<double>(wanted, 2, kMostSamples));
-    }
-    return footprint;
-}
-
-double texelAngle(const PrefilterRequest& request) {
-    const bool rows = request.layout == Layout::latlong || request.layout == Layout::exrLatlong;
-    return (rows ? kPi : 0.5 * kPi) / request.size;
-}
-
 /// What an output's rows are made from; absent parts are null.
 struct Ingredients {
     const SmoothField* field = nullptr;

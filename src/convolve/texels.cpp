@@ -43,6 +43,22 @@ void addTexel(Layout layout, int width, int height, int x, int y, const Footprin
 
 } // namespace
 
+double texelAngle(const PrefilterRequest& request) {
+    const bool rows = request.layout == Layout::latlong || request.layout == Layout::exrLatlong;
+    return (rows ? kPi : 0.5 * kPi) / request.size;
+}
+
+Footprint footprintOf(const Lobe& lobe, double texel) {
+    const double diameter = 2 * lobeWidth(lobe);
+    Footprint footprint;
+    footprint.scale = std::clamp(2 - diameter / texel, 0.0, 1.0);
+    if (footprint.scale > 0) {
+        const double wanted = std::ceil(1 + 3 * footprint.scale * texel / diameter);
+        footprint.samples = static_cast<int>(std::clamp<double>(wanted, 2, kMostSamples));
+    }
+    return footprint;
+}
+
 RowPoints rowPoints(Layout layout, int width, int height, int y, const Footprint& footprint) {
     RowPoints points;
     points.per_texel = footprint.samples * footprint.samples;

@@ -1,7 +1,8 @@
 // The directions that an output's texels look along.
 #pragma once
 
-#include "panorama/panorama.h"
+#include "convolve/lobe.h"
+#include "convolve/prefilter.h"
 
 #include <vector>
 
@@ -13,6 +14,16 @@ struct Footprint {
     double scale = 0;
     int samples = 1;
 };
+
+inline constexpr int kMostSamples = 16;
+
+/// The angle that a texel of the map covers, about.
+double texelAngle(const PrefilterRequest& request);
+
+/// Where a lobe's diameter (that of half its mass) is two texels or more, a texel is its centre's
+/// value; where it is one texel or less, the mean over the footprint; in between, the mean over the
+/// footprint shrunk in proportion. Points stand closer than the lobe is wide, up to kMostSamples.
+Footprint footprintOf(const Lobe& lobe, double texel);
 
 /// The texels of one row of a map that have a direction, and their points.
 struct RowPoints {
