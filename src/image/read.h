@@ -36,9 +36,10 @@ struct ImageFile {
 /// loaded when such a file is met. Integer formats are display-referred: they are decoded from sRGB
 /// (and noted). NaN, infinities and negative values are kept as they are. An OpenEXR image covers
 /// its display window; where its data window has no pixels it is 0.
-/// Throws inputError for whatever cannot be read whole: a missing, empty or truncated file, a deep
-/// image, an unknown layer, an image of more than 65536 pixels an edge or 2^30 pixels in all; and
-/// Error(ExitCode::missing) if OpenImageIO is needed and not there.
+/// Throws inputError for a missing, empty or truncated file (parts and levels of an OpenEXR file
+/// that are not read may be damaged), a deep image, an unknown layer, an image of more than 65536
+/// pixels an edge or 2^30 pixels in all; and Error(ExitCode::missing) if OpenImageIO is needed and
+/// not there.
 ImageFile readImage(const std::string& path, const ReadOptions& options = {});
 
 } // namespace ibl

@@ -132,14 +132,19 @@ inline bool anyContains(const std::vector<std::string>& lines, const std::string
     return false;
 }
 
-/// Runs a program and returns what it prints; it has to succeed.
-inline std::string run(const std::string& command) {
+/// Runs a program, its output to `text`, and returns its status, 0 for success.
+inline int status(const std::string& command, std::string& text) {
     std::FILE* pipe = ::popen((command + " 2>&1").c_str(), "r");
-    std::string text;
     char buffer[4096];
     while (const std::size_t n = std::fread(buffer, 1, sizeof buffer, pipe))
         text.append(buffer, n);
-    EXPECT_EQ(::pclose(pipe), 0) << command << "\n" << text;
+    return ::pclose(pipe);
+}
+
+/// The same for a program that has to succeed; returns what it prints.
+inline std::string run(const std::string& command) {
+    std::string text;
+    EXPECT_EQ(status(command, text), 0) << command << "\n" << text;
     return text;
 }
 

@@ -17,6 +17,13 @@ TEST_F(Oiio, TheProgramDoesNotLinkIt) {
     EXPECT_FALSE(contains(libraries, "OpenImageIO"));
 }
 
+TEST_F(Oiio, AMissingModuleIsNamedWithItsPackage) {
+    fs::copy_file("/proc/self/exe", path("program")); // away from the module
+    std::string text;
+    EXPECT_NE(status(path("program") + " --gtest_filter=Oiio.ReadsFloatTiffAsItIs", text), 0);
+    EXPECT_TRUE(contains(text, "install the package libopenimageio")) << text;
+}
+
 TEST_F(Oiio, ReadsFloatTiffAsItIs) {
     const ImageFile file = readImage(testdata("gradient.tif"));
     expectNear(file.image, gradientPixels(), 1e-6F);
