@@ -43,8 +43,8 @@ struct PixelRect {
     V2i max;
 };
 
-/// The pixels of the frame that the unit sphere at the origin may touch, samples anywhere in a pixel
-/// included: the whole frame when the eye's plane cuts the sphere, none when it lies behind.
+/// The pixels of the frame that the unit sphere at the origin may touch, samples anywhere in a
+/// pixel included: the whole frame when the eye's plane cuts the sphere, none when it lies behind.
 PixelRect unitSphereRect(const CameraRays& rays, int width, int height);
 
 /// Rays of a width x height frame of square pixels.

@@ -114,11 +114,12 @@ EglContext::EglContext(DevicePreference preference) {
     context_ = found.context;
 }
 
+// The display stays as it is for the life of the process: EGL hands out one display a device,
+// whoever asks, and terminating it would take every other context there along.
 EglContext::~EglContext() {
     if (!context_) return;
     eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     eglDestroyContext(display_, context_);
-    eglTerminate(display_);
 }
 
 EglContext::EglContext(EglContext&& other) noexcept

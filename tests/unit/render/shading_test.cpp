@@ -107,7 +107,7 @@ TEST(Shading, SunsKeepTheirPlaceAndStrength) {
 
 TEST(Shading, DiffuseSphereIsTheOraclesIrradiance) {
     const Panorama probe = noiseProbe(Layout::latlong, 16, 8);
-    const int edge = 24;
+    const int edge = 16;
     std::vector<oracle::Direction> directions;
     for (int face = 0; face < 6; ++face) {
         for (int k = 0; k < edge * edge; ++k) {
@@ -115,7 +115,7 @@ TEST(Shading, DiffuseSphereIsTheOraclesIrradiance) {
             directions.push_back({d.x, d.y, d.z});
         }
     }
-    const auto irradiance = oracle::convolve(probe.image, oracle::lambert(), directions, 1e-5);
+    const auto irradiance = oracle::convolve(probe.image, oracle::lambert(), directions, 1e-4);
     Panorama diffuse{Layout::faces, Image(edge, 6 * edge)};
     for (std::size_t i = 0; i < irradiance.size(); ++i) {
         for (std::size_t c = 0; c < 3; ++c) {
@@ -140,14 +140,14 @@ TEST(Shading, DiffuseSphereIsTheOraclesIrradiance) {
         }
     }
     ASSERT_GT(normals.size(), 60u);
-    const auto expected = oracle::convolve(probe.image, oracle::lambert(), normals, 1e-5);
+    const auto expected = oracle::convolve(probe.image, oracle::lambert(), normals, 1e-4);
     std::size_t next = 0;
     const double error = frameError(frame, camera, 1, true, [&](const V3d& eye, const V3d& ray) {
         if (!meetSphere(eye, ray)) return V3d(1, 2, 3);
         const auto& e = expected[next++];
         return V3d(0.5 * e[0], e[1], 0.25 * e[2]);
     });
-    EXPECT_LT(error, 3e-4); // the map's own interpolation at 24 texels a face
+    EXPECT_LT(error, 1e-3); // of which the map's interpolation at 16 texels a face is nearly all
 }
 
 TEST(Shading, MirrorDiffuseIsTheirMixture) {
