@@ -124,6 +124,16 @@ TEST(Repair, LeavesFacesApart) {
     EXPECT_NEAR(p.image.at(1, 21)[0], (62.0f * 1 + 16 * 100) / 78, 1e-5);
 }
 
+TEST(Repair, LeavesFacesApartSideBySideToo) {
+    Panorama p =
+        filled(Layout::strip, 24, 4, [](const V3d& d) { return V3d(d.x < -0.6 ? 100 : 1); });
+    p.image.at(3, 1)[0] = kNan; // right column of +X, beside -X
+    p.image.at(3, 2)[1] = kInf;
+    EXPECT_EQ(repair("p", p), 2);
+    EXPECT_EQ(p.image.at(3, 1)[0], 1);
+    EXPECT_EQ(p.image.at(3, 2)[1], 1);
+}
+
 TEST(Repair, RefusesWhenNothingIsLeft) {
     Panorama p = filled(Layout::latlong, 4, 2, [](const V3d&) { return V3d(1, kNan, 1); });
     EXPECT_THROW(repair("p", p), Error);

@@ -227,6 +227,7 @@ TEST(Layouts, WrongShapesAreRefused) {
     EXPECT_TRUE(refused(1, 2));
     EXPECT_TRUE(refused(100, 100));
     EXPECT_TRUE(refused(640, 360));
+    EXPECT_TRUE(refused(1025, 511)); // |W - 2H| = 3
     EXPECT_TRUE(refused(1024, 510)); // |W - 2H| = 4
     EXPECT_TRUE(refused(1026, 768)); // nearly a cross
     EXPECT_TRUE(refused(512, 1024));
