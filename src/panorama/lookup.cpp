@@ -67,7 +67,9 @@ V3d latlongRadiance(const Sampler& sampler, const V3d& direction, double width) 
     // One column's width is what interpolation smooths by anyway; all the way round stays all.
     double columns_wide = 0;
     if (width > 0 && columns > 1) {
-        const double around = 2 * kPi * std::sin(kPi * point.y);
+        const double around = 2 * kPi *
+                              std::sqrt(direction.x * direction.x + direction.z * direction.z) /
+                              direction.length();
         const double covered = width < around ? width / around * columns : columns;
         columns_wide = std::max(0.0, covered - 1) * columns / (columns - 1);
     }

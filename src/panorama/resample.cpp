@@ -175,13 +175,21 @@ void mergeBorder(Panorama& panorama) {
 }
 
 Panorama resample(const Panorama& source, Layout to, int size, int threads) {
-    // The widest image of the largest size stays within what files and indices hold.
-    constexpr int kLargestSize = 16384;
-    if (size < 1 || size > kLargestSize) {
-        throw Error(ExitCode::usage, "size " + std::to_string(size) + ": not from 1 to " +
-                                         std::to_string(kLargestSize));
+    // What images are read up to, so that every result can be an input.
+    constexpr int kLargestEdge = 65536;
+    constexpr long long kMostPixels = 1LL << 30;
+    if (size < 1) {
+        throw Error(ExitCode::usage, "size " + std::to_string(size) +
+                                         ": no image is so small; "
+                                         "ask for 1 or more");
     }
-    const V2i extent = layoutExtent(to, size);
+    const V2i extent = size <= kLargestEdge ? layoutExtent(to, size) : V2i(size);
+    if (std::max(extent.x, extent.y) > kLargestEdge ||
+        static_cast<long long>(extent.x) * extent.y > kMostPixels) {
+        throw Error(ExitCode::usage, "size " + std::to_string(size) +
+                                         ": the image is beyond 65536 "
+                                         "pixels an edge or 2^30 in all; ask for less");
+    }
     if (to == source.layout && extent == V2i(source.image.width, source.image.height))
         return source;
 

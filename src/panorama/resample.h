@@ -16,7 +16,8 @@ namespace ibl {
 /// outside its faces are 0.
 ///
 /// `threads` 0: as many as the machine has; the result does not depend on it.
-/// Throws Error (usage) when size < 1 or the image would not fit in memory.
+/// Throws Error (usage) when size < 1 or the image would have more than 65536 pixels an edge or
+/// 2^30 in all.
 Panorama resample(const Panorama& source, Layout to, int size, int threads = 0);
 
 } // namespace ibl
