@@ -3,6 +3,7 @@
 #include "core/parallel.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <vector>
 
@@ -12,12 +13,16 @@ namespace {
 constexpr float kLargest = 0x1.fep126F; // 255 * 2^119
 constexpr int kShortestRun = 4;
 
-/// The power of two whose mantissas of `v` >= 2^-128 lie in [128, 256), as the file's exponent
-/// byte.
+/// The exponent byte e for which v >= 2^-128 has its mantissa v * 2^(136 - e) in [128, 256). A
+/// normal float 1.f * 2^E holds E + 127, and e = E + 129.
 int exponentByte(float v) {
-    int exponent = 0;
-    std::frexp(v, &exponent); // v = f * 2^exponent, 0.5 <= f < 1
-    return exponent + 128;
+    const int stored = static_cast<int>(std::bit_cast<std::uint32_t>(v) >> 23);
+    return stored > 0 ? stored + 2 : v >= 0x1p-127F ? 2 : 1;
+}
+
+/// 2^n, n within double's normal range.
+double powerOfTwo(int n) {
+    return std::bit_cast<double>(static_cast<std::uint64_t>(n + 1023) << 52);
 }
 
 /// One pixel to mantissas and exponent. Rounding the largest channel up to 256 carries into the
@@ -44,7 +49,7 @@ void encodePixel(const float* rgb, WriteLosses& losses, std::uint8_t out[4]) {
     if (largest < 0x1p-128F) return;
     int e = exponentByte(largest);
     // Exact as a double for every e, and so is each product.
-    double scale = std::ldexp(1.0, 136 - e);
+    double scale = powerOfTwo(136 - e);
     if (largest * scale + 0.5 >= 256) {
         ++e;
         scale /= 2;

@@ -3,6 +3,8 @@
 #include "image/png.h"
 #include "image/srgb.h"
 
+#include <png.h>
+
 namespace ibl::test {
 namespace {
 
@@ -116,6 +118,54 @@ TEST_F(Png, ReadsOtherPeoplesTypes) {
     const Image grey = readImage(testdata("grey.png")).image;
     ASSERT_EQ(grey.channels, 3);
     EXPECT_NEAR(grey.at(5, 5)[2], srgbDecoded(128.0 / 255), 1e-6);
+}
+
+/// A file of any type by libpng: `rows` are its packed bytes.
+void writeByLibpng(const std::string& path, int width, int depth, int type, int interlace,
+                   double gamma, const std::vector<png_color>& palette,
+                   std::vector<std::vector<png_byte>> rows) {
+    std::FILE* file = std::fopen(path.c_str(), "wb");
+    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+    png_infop info = png_create_info_struct(png);
+    png_init_io(png, file);
+    png_set_IHDR(png, info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(rows.size()),
+                 depth, type, interlace, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    if (!palette.empty()) png_set_PLTE(png, info, palette.data(), static_cast<int>(palette.size()));
+    if (gamma > 0) png_set_gAMA(png, info, gamma);
+    png_write_info(png, info);
+    std::vector<png_bytep> pointers;
+    for (auto& row : rows)
+        pointers.push_back(row.data());
+    png_write_image(png, pointers.data());
+    png_write_end(png, info);
+    png_destroy_write_struct(&png, &info);
+    std::fclose(file);
+}
+
+TEST_F(Png, InterlacedPalettes) {
+    const std::vector<png_color> palette = {{0, 0, 0}, {255, 128, 0}, {10, 20, 30}, {9, 9, 9}};
+    // Two bits a pixel: 0 1 2 3 and 3 2 1 0, nine rows.
+    std::vector<std::vector<png_byte>> rows(9, {0x1b});
+    rows[8] = {0xe4};
+    writeByLibpng(path("a.png"), 4, 2, PNG_COLOR_TYPE_PALETTE, PNG_INTERLACE_ADAM7, 0, palette,
+                  rows);
+    const Image image = readImage(path("a.png")).image;
+    ASSERT_EQ(image.height, 9);
+    for (const int x : {0, 1, 2, 3}) {
+        const png_color& colour = palette[static_cast<std::size_t>(x)];
+        EXPECT_NEAR(image.at(x, 3)[0], srgbDecoded(colour.red / 255.0), 1e-6);
+        EXPECT_NEAR(image.at(3 - x, 8)[1], srgbDecoded(colour.green / 255.0), 1e-6);
+    }
+}
+
+TEST_F(Png, AGammaChunkIsHonoured) {
+    // 16 bits, linear: 0x8000 and 0x0100 of 65535.
+    writeByLibpng(path("a.png"), 2, 16, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE, 1.0, {},
+                  {{0x80, 0, 1, 0}});
+    const ImageFile file = readImage(path("a.png"));
+    EXPECT_NEAR(file.image.at(0, 0)[0], 32768.0 / 65535, 1e-6);
+    EXPECT_NEAR(file.image.at(1, 0)[2], 256.0 / 65535, 1e-7);
+    EXPECT_TRUE(anyContains(file.notes, "gAMA"));
 }
 
 TEST_F(Png, SameBytesForAnyThreads) {
