@@ -2,6 +2,7 @@
 
 #include <Imath/ImathBox.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 

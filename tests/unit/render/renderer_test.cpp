@@ -1,9 +1,12 @@
 #include "scene_support.h"
 
 #include "core/error.h"
+#include "render/sample_pattern.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -186,6 +189,39 @@ TEST(Meshes, TheNearerSurfaceIsSeenWhateverTheOrder) {
         const Image back = renderer.renderLinear({{0, 0, -5}, {0, 0, 0}, {0, 1, 0}, 20}, {});
         EXPECT_EQ(pixel(back, 16, 16), V3d(0)); // turned to -Z
     }
+}
+
+TEST(Meshes, EdgesAreCoveredSampleForSample) {
+    Mesh mesh;
+    mesh.positions = {{-9, -9, 0}, {0.1f, -9, 0}, {0.1f, 0.23f, 0}, {-9, 0.23f, 0}};
+    mesh.normals.assign(4, V3f(0, 0, 1));
+    mesh.indices = {0, 1, 2, 0, 2, 3};
+    const Panorama white = constantProbe(1);
+    Scene scene;
+    scene.diffuse = &white;
+    scene.material.shader = Shader::diffuse;
+    scene.object.mesh = mesh;
+    scene.background = NoBackground{};
+    // A slanting edge, since upright ones cover as many samples of the mirrored pattern.
+    const Camera camera{{0.3, 0, 4}, {0, 0, 0}, {0.6, 1, 0}, 40};
+    const Image frame =
+        Renderer(softwareContext(), scene, {30, 20, 3, {}}).renderLinear(camera, {});
+    const CameraRays rays = cameraRays(camera, 30, 20);
+    int partial = 0, wrong = 0;
+    for (int y = 0; y < 20; ++y) {
+        for (int x = 0; x < 30; ++x) {
+            int inside = 0;
+            for (const V2d& p : samplePattern(3)) {
+                const V3d d = rays.direction(x + p.x, y + p.y);
+                const V3d hit = rays.eye - d * (rays.eye.z / d.z);
+                inside += hit.x < 0.1f && hit.y < 0.23f;
+            }
+            wrong += std::abs(frame.at(x, y)[3] - inside / 3.0) > 0.1;
+            partial += inside > 0 && inside < 3;
+        }
+    }
+    EXPECT_GT(partial, 10);
+    EXPECT_LE(wrong, 2); // devices place vertices on a grid in the pixel
 }
 
 TEST(Renderer, DrawsOnePixelAndNeedsOnlyItsMaps) {
