@@ -2,108 +2,24 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "image/exr_headers.h"
 #include "image/exr_layers.h"
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfInputPart.h>
 #include <OpenEXR/ImfMultiPartInputFile.h>
-#include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfRgbaFile.h>
 #include <OpenEXR/ImfStandardAttributes.h>
-#include <OpenEXR/ImfStdIO.h>
-#include <OpenEXR/ImfTestFile.h>
 #include <OpenEXR/ImfThreading.h>
-#include <OpenEXR/ImfVersion.h>
-#include <OpenEXR/ImfXdr.h>
 
 #include <algorithm>
-#include <cstring>
 #include <memory>
-#include <optional>
 
 namespace ibl {
 namespace {
 
 using Imath::Box2i;
-
-/// OpenEXR's stream over bytes in memory.
-class MemoryStream : public Imf::IStream {
-public:
-    MemoryStream(const std::vector<std::uint8_t>& bytes, const std::string& name)
-        : IStream(name.c_str()), bytes_(bytes) {}
-    bool read(char out[], int count) override {
-        if (count < 0 || position_ > bytes_.size() ||
-            static_cast<std::size_t>(count) > bytes_.size() - position_) {
-            throw Iex::InputExc("unexpected end of file");
-        }
-        std::memcpy(out, bytes_.data() + position_, static_cast<std::size_t>(count));
-        position_ += static_cast<std::size_t>(count);
-        return position_ < bytes_.size();
-    }
-    std::uint64_t tellg() override { return position_; }
-    void seekg(std::uint64_t position) override { position_ = position; }
-
-private:
-    const std::vector<std::uint8_t>& bytes_;
-    std::size_t position_ = 0;
-};
-
-std::unique_ptr<Imf::IStream> openStream(const Source& source) {
-    if (source.whole) return std::make_unique<MemoryStream>(source.bytes, source.name);
-    return std::make_unique<Imf::StdIFStream>(source.path.c_str());
-}
-
-/// Width or height of a window from its corners, which may lie anywhere in the range of int.
-std::int64_t extent(int low, int high) {
-    return std::int64_t{high} - low + 1;
-}
-
-/// Refuses what OpenEXR would take memory for before it sees that the file cannot hold it: its
-/// tables go by the height of the data window, its buffers by the tile size.
-void checkHeader(const Imf::Header& header, const std::string& name) {
-    const Box2i data = header.dataWindow(), display = header.displayWindow();
-    const std::int64_t data_width = extent(data.min.x, data.max.x);
-    const std::int64_t data_height = extent(data.min.y, data.max.y);
-    const std::int64_t width = extent(display.min.x, display.max.x);
-    const std::int64_t height = extent(display.min.y, display.max.y);
-    checkSize(name, data_width, data_height);
-    checkSize(name, width, height);
-    // A few pixels in a vast black frame are a mistake or an attack.
-    if (width * height > std::max(std::int64_t{1} << 24, 64 * data_width * data_height)) {
-        throw inputError(name, "has a display window far larger than its pixels; crop it first");
-    }
-    if (header.hasTileDescription()) {
-        const Imf::TileDescription& tiles = header.tileDescription();
-        if (std::uint64_t{tiles.xSize} * tiles.ySize >
-            static_cast<std::uint64_t>(std::max(std::int64_t{1} << 22, data_width * data_height))) {
-            throw inputError(name, "has tiles larger than its image; the file is corrupt");
-        }
-    }
-}
-
-/// The headers of all parts (OpenEXR's file layout: magic number, version, headers; those of a
-/// multi-part file end with an empty one).
-std::vector<Imf::Header> readHeaders(Imf::IStream& stream, const std::string& name) {
-    int magic = 0, version = 0;
-    Imf::Xdr::read<Imf::StreamIO>(stream, magic);
-    Imf::Xdr::read<Imf::StreamIO>(stream, version);
-    std::vector<Imf::Header> headers;
-    while (true) {
-        if (!headers.empty()) {
-            if (!Imf::isMultiPart(version)) break;
-            const std::uint64_t position = stream.tellg();
-            char first = 0;
-            Imf::Xdr::read<Imf::StreamIO>(stream, first);
-            if (first == 0) break;
-            stream.seekg(position);
-        }
-        Imf::Header& header = headers.emplace_back();
-        header.readFrom(stream, version);
-        checkHeader(header, name);
-    }
-    return headers;
-}
 
 const char* compressionName(Imf::Compression compression) {
     switch (compression) {
@@ -188,10 +104,8 @@ struct Target {
           data(header.dataWindow()),
           shared({std::max(display.min.x, data.min.x), std::max(display.min.y, data.min.y)},
                  {std::min(display.max.x, data.max.x), std::min(display.max.y, data.max.y)}),
-          image(static_cast<int>(extent(display.min.x, display.max.x)),
-                static_cast<int>(extent(display.min.y, display.max.y)), channels) {
-        if (shared != display) std::fill(image.pixels.begin(), image.pixels.end(), 0.0F);
-    }
+          image(static_cast<int>(windowExtent(display.min.x, display.max.x)),
+                static_cast<int>(windowExtent(display.min.y, display.max.y)), channels) {}
     float* at(int x, int y) { return image.at(x - display.min.x, y - display.min.y); }
     std::size_t dataWidth() const { return static_cast<std::size_t>(data.max.x - data.min.x) + 1; }
     bool empty() const { return shared.isEmpty(); }
@@ -205,6 +119,27 @@ char* sliceBase(T* pixel, int x, int y, std::size_t x_stride, std::size_t y_stri
     const auto offset = std::int64_t{x} * static_cast<std::int64_t>(x_stride) +
                         std::int64_t{y} * static_cast<std::int64_t>(y_stride);
     return reinterpret_cast<char*>(address - static_cast<std::uintptr_t>(offset));
+}
+
+/// Zero where the data window has no pixels. Done last, so that a header that lies about the
+/// windows has failed before the memory is touched.
+void clearOutside(Target& target) {
+    const std::size_t channels = static_cast<std::size_t>(target.image.channels);
+    const auto left = target.empty() ? 0 : std::int64_t{target.shared.min.x} - target.display.min.x;
+    const auto right =
+        target.empty() ? 0 : std::int64_t{target.display.max.x} - target.shared.max.x;
+    for (int row = 0; row < target.image.height; ++row) {
+        const std::int64_t y = std::int64_t{target.display.min.y} + row;
+        float* begin = target.image.row(row);
+        float* end = begin + target.image.rowFloats();
+        if (target.empty() || y < target.shared.min.y || y > target.shared.max.y) {
+            std::fill(begin, end, 0.0F);
+        } else {
+            std::fill_n(begin, static_cast<std::size_t>(left) * channels, 0.0F);
+            std::fill_n(end - static_cast<std::size_t>(right) * channels,
+                        static_cast<std::size_t>(right) * channels, 0.0F);
+        }
+    }
 }
 
 void setFloats(Imf::InputPart& part, const Channels& channels, float* pixel, int x, int y,
@@ -339,7 +274,7 @@ void describe(const std::vector<Imf::Header>& parts, const ExrChoice& choice,
 }
 
 ImageFile readParts(Imf::IStream& stream, const std::string& name, const ReadOptions& options) {
-    const std::vector<Imf::Header> parts = readHeaders(stream, name);
+    const std::vector<Imf::Header> parts = readExrHeaders(stream, name);
     const ExrChoice choice = chooseExrLayer(parts, options.layer, name);
     const Imf::Header& header = parts[static_cast<std::size_t>(choice.part)];
     const bool alpha = options.keep_alpha && choice.alpha;
@@ -366,6 +301,7 @@ ImageFile readParts(Imf::IStream& stream, const std::string& name, const ReadOpt
         readChannels(input, choice, channels, target);
         if (choice.colour == ExrColour::luminance) spreadLuminance(target.image, threads);
     }
+    clearOutside(target);
     describe(parts, choice, options, target, file);
     file.image = std::move(target.image);
     return file;
@@ -382,7 +318,7 @@ int exrThreads(int threads) {
 
 ImageFile readExr(const Source& source, const ReadOptions& options) {
     try {
-        const std::unique_ptr<Imf::IStream> stream = openStream(source);
+        const std::unique_ptr<Imf::IStream> stream = openExrStream(source);
         return readParts(*stream, source.name, options);
     } catch (const Error&) {
         throw;

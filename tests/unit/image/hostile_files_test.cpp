@@ -105,6 +105,16 @@ TEST_F(HostileFiles, AlteredBytesNeverCrash) {
     EXPECT_LT(usage.ru_maxrss, 1500 * 1024) << "KiB";
 }
 
+TEST_F(HostileFiles, AnAttributeLargerThanItsFileTakesNoMemory) {
+    std::string bytes("\x76\x2f\x31\x01\x02\0\0\0", 8);
+    bytes += std::string("comments\0string\0", 16) + "\xff\xff\xff\x7f" + "text";
+    rusage before = {}, after = {};
+    ::getrusage(RUSAGE_SELF, &before);
+    EXPECT_FALSE(isRead(bytes));
+    ::getrusage(RUSAGE_SELF, &after);
+    EXPECT_LT(after.ru_maxrss - before.ru_maxrss, 64 * 1024) << "KiB";
+}
+
 TEST_F(HostileFiles, ShortFilesOfEveryFormat) {
     const char* tails[] = {"", "\n", "\n\n", "\n\n-Y 4 +X 4\n"};
     for (const char* tail : tails)
