@@ -86,6 +86,7 @@ struct Renderer::State {
 
     VertexArray no_vertices;
     Program surface, background, accumulate;
+    std::array<Program, 4> resolves; // made when first used: the S-curve or not, bytes or floats
     // One tile: a sample, the sum of samples, and the picture as it is read.
     Texture sample, sum, floats, bytes;
     Renderbuffer depth;
@@ -101,7 +102,7 @@ struct Renderer::State {
     void drawSphere(const CameraRays& rays, const V2i& tile) const;
     void drawMesh(const CameraRays& rays, const V2d& jitter) const;
     void drawTile(const CameraRays& rays, const V2i& tile) const;
-    Program resolveProgram(const Display& display, bool to_bytes) const;
+    const Program& resolveProgram(const Display& display, bool as_bytes);
     template <class T>
     void drawFrame(const Camera& camera, const Display& display, T* pixels);
 };
@@ -248,7 +249,7 @@ void Renderer::State::drawTile(const CameraRays& rays, const V2i& tile) const {
     }
 }
 
-Program Renderer::State::resolveProgram(const Display& display, bool as_bytes) const {
+const Program& Renderer::State::resolveProgram(const Display& display, bool as_bytes) {
     const double exposure = std::exp2(display.exposure);
     if (!(exposure > 0 && exposure < std::numeric_limits<float>::max())) {
         throw usage("the exposure is beyond what floats hold; stay within 120 stops");
@@ -260,11 +261,14 @@ Program Renderer::State::resolveProgram(const Display& display, bool as_bytes) c
     const auto flag = [](const char* name, bool on) {
         return std::string(name) + (on ? " 1" : " 0");
     };
-    Program program =
-        makeProgram({"fullscreen.vert",
-                     {"resolve.frag"},
-                     {flag("STRAIGHT", !opaque), flag("SCURVE", scurve), flag("BYTES", as_bytes)}},
-                    options.shader_folder);
+    Program& program = resolves[(scurve ? 2 : 0) + (as_bytes ? 1 : 0)];
+    if (!program) {
+        program = makeProgram(
+            {"fullscreen.vert",
+             {"resolve.frag"},
+             {flag("STRAIGHT", !opaque), flag("SCURVE", scurve), flag("BYTES", as_bytes)}},
+            options.shader_folder);
+    }
     // Each sample has gone into the sum by the weight 2^-k, where 2^k >= samples.
     const double weight = std::exp2(-std::ceil(std::log2(options.samples)));
     if (accumulate) setUniform(accumulate, "weight", weight);
@@ -279,7 +283,7 @@ template <class T>
 void Renderer::State::drawFrame(const Camera& camera, const Display& display, T* pixels) {
     constexpr bool as_bytes = sizeof(T) == 1;
     const CameraRays rays = cameraRays(camera, options.width, options.height);
-    const Program resolve = resolveProgram(display, as_bytes);
+    const Program& resolve = resolveProgram(display, as_bytes);
     const V2i size = tileSize();
     // Bytes are made on the device: reading them from a float target costs thirty times as much.
     Texture& target = as_bytes ? bytes : floats;
