@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 namespace ibl {
 namespace {
@@ -61,26 +62,51 @@ void checkHeader(const Imf::Header& header, const std::string& name) {
     }
 }
 
-/// Throws unless the attributes of the header at the stream's place lie within the file: OpenEXR
-/// takes memory by an attribute's size (up to 2 GiB) before it reads it. The place is kept.
+/// Characters up to a zero.
+std::string readName(Imf::IStream& stream) {
+    std::string name;
+    char c = 0;
+    for (stream.read(&c, 1); c != 0; stream.read(&c, 1))
+        name += c;
+    return name;
+}
+
+/// Types whose values OpenEXR reads without regard to the size that the file gives for them.
+bool isSizeRight(const std::string& type, int size) {
+    constexpr std::pair<const char*, int> kSizes[] = {
+        {"compression", 1}, {"lineOrder", 1}, {"envmap", 1},   {"deepImageState", 1},
+        {"box2i", 16},      {"box2f", 16},    {"int", 4},      {"float", 4},
+        {"double", 8},      {"v2i", 8},       {"v2f", 8},      {"v2d", 16},
+        {"v3i", 12},        {"v3f", 12},      {"v3d", 24},     {"m33f", 36},
+        {"m44f", 64},       {"m33d", 72},     {"m44d", 128},   {"rational", 8},
+        {"timecode", 8},    {"keycode", 28},  {"tiledesc", 9}, {"chromaticities", 32},
+    };
+    for (const auto& [name, right] : kSizes) {
+        if (type == name) return size == right;
+    }
+    return true;
+}
+
+/// Throws unless the attributes of the header at the stream's place have sizes that are theirs and
+/// lie within the file: OpenEXR takes memory by an attribute's size (up to 2 GiB) before it reads
+/// it. The place is kept.
 void checkAttributes(Imf::IStream& stream) {
     const std::uint64_t begin = stream.tellg();
-    const auto skipName = [&] { // returns whether it was empty
-        char c = 0;
-        stream.read(&c, 1);
-        const bool empty = c == 0;
-        while (c != 0)
-            stream.read(&c, 1);
-        return empty;
-    };
-    while (!skipName()) {
-        skipName(); // the type
+    while (!readName(stream).empty()) {
+        const std::string type = readName(stream);
         int size = 0;
         Imf::Xdr::read<Imf::StreamIO>(stream, size);
-        if (size < 0) throw Iex::InputExc("an attribute of negative size");
+        const std::uint64_t end = stream.tellg() + static_cast<std::uint64_t>(std::max(size, 0));
+        if (type == "chlist") { // names, 16 bytes after each, ended by an empty one
+            while (!readName(stream).empty())
+                stream.seekg(stream.tellg() + 16);
+        }
+        if (size < 0 || !isSizeRight(type, size) || (type == "chlist" && stream.tellg() != end)) {
+            throw Iex::InputExc("an attribute of the wrong size");
+        }
         if (size == 0) continue;
         char last = 0;
-        stream.seekg(stream.tellg() + static_cast<std::uint64_t>(size) - 1);
+        stream.seekg(end - 1);
         stream.read(&last, 1);
     }
     stream.seekg(begin);
