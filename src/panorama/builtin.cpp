@@ -32,8 +32,11 @@ constexpr std::array<double, 3> kBlue{0.45, 0.95, 2.0}, kPale{1.05, 1.05, 1.1};
 constexpr double kSunRadius = 0.2666 * kPi / 180;
 constexpr std::array<double, 3> kSunRadiance{30000, 27500, 23000};
 constexpr double kSunElevation = 40 * kPi / 180, kSunAzimuth = 30 * kPi / 180;
-// The ground: about a fifth of the light that falls on it.
+// The ground: about a fifth of the light that falls on it; a chequered floor whose squares are as
+// wide as the probe stands high, so that reflections show which way they go. The contrast is lost
+// where a pixel sees much of a square.
 constexpr std::array<double, 3> kGround{0.13, 0.12, 0.1};
+constexpr double kChequer = 0.35;
 
 V3d vector(const std::array<double, 3>& v) {
     return {v[0], v[1], v[2]};
@@ -88,6 +91,17 @@ void addSun(Image& image) {
     }
 }
 
+/// Radiance of the floor below a direction with d.y < 0, of which a pixel sees `pitch` radians.
+V3d groundRadiance(const V3d& d, double pitch) {
+    const double x = d.x / -d.y, z = d.z / -d.y;
+    const double blur = kPi * pitch * (1 + x * x + z * z); // of the pattern's phase, radians
+    const auto wave = [&](double at) {
+        const double s = std::sin(kPi * at);
+        return s / std::sqrt(s * s + blur * blur);
+    };
+    return vector(kGround) * (1 + kChequer * wave(x) * wave(z));
+}
+
 /// Rows are as they are at their centres, but for one that the horizon cuts, which is half of each.
 void sky(Image& image, int threads) {
     const V3d sun = sunDirection();
@@ -105,7 +119,10 @@ void sky(Image& image, int threads) {
         const SkyRow sky_row(cos_zenith);
         for (int x = 0; x < image.width; ++x) {
             V3d value = vector(kGround);
-            if (!ground) {
+            if (ground) {
+                const V3d below = latlongDirection((x + 0.5) / image.width, theta / kPi);
+                value = groundRadiance(below, kPi / image.height);
+            } else {
                 const double cos_chi = along * cos_from_sun[static_cast<std::size_t>(x)] + up;
                 const V3d above = sky_row.radiance(cos_chi);
                 value = cut ? (above + value) * 0.5 : above;
