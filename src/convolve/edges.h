@@ -40,30 +40,29 @@ inline Axis makeAxis(double u, double v) {
 
 namespace edges {
 
-/// Quadrature over s in [from, to] of an integrand that varies over s ~ scale about s = 0. Edges
-/// longer than `longest` are taken in pieces.
+/// Quadrature over s in [from, to] of an integrand that varies over s ~ scale about s = 0, in
+/// pieces that are at most `longest` long and of which Gauss points see at most the poles at tau =
+/// +-i pi/2, half as far away as the piece is long or farther: 14 points then leave 1e-9.
 template <class F>
 double sinhQuadrature(double from, double to, double scale, double longest, const F& integrand) {
-    if (to - from > 1.01 * longest) {
-        const int pieces = static_cast<int>(std::ceil((to - from) / longest));
-        double sum = 0;
-        for (int i = 0; i < pieces; ++i) {
-            sum += sinhQuadrature(from + (to - from) * i / pieces,
-                                  from + (to - from) * (i + 1) / pieces, scale, longest, integrand);
-        }
-        return sum;
-    }
-    const double low = std::asinh(from / scale), high = std::asinh(to / scale);
-    const int n =
-        std::clamp(3 + static_cast<int>(2.5 * (high - low) + 4 * (to - from) / longest), 3, 32);
-    const GaussRule& rule = gaussRule(n);
-    const double half = 0.5 * (high - low), mid = 0.5 * (high + low);
+    const double end = std::asinh(to / scale);
     double sum = 0;
-    for (int i = 0; i < n; ++i) {
-        const double tau = mid + half * rule.nodes[i];
-        sum += rule.weights[i] * scale * std::cosh(tau) * integrand(scale * std::sinh(tau));
+    for (double low = std::asinh(from / scale), s = from; low < end;) {
+        const double high = std::min({low + 3, std::asinh((s + longest) / scale), end});
+        const double next = high < end ? scale * std::sinh(high) : to;
+        const int n = 4 + static_cast<int>(2.5 * (high - low) + 4 * (next - s) / longest);
+        const GaussRule& rule = gaussRule(n);
+        const double half = 0.5 * (high - low), mid = 0.5 * (high + low);
+        for (int i = 0; i < n; ++i) {
+            // scale * (sinh, cosh) of tau, from one exponential
+            const double e = std::exp(mid + half * rule.nodes[i]), inverse = 1 / e;
+            sum += half * rule.weights[i] * 0.5 * scale * (e + inverse) *
+                   integrand(0.5 * scale * (e - inverse));
+        }
+        low = high;
+        s = next;
     }
-    return half * sum;
+    return sum;
 }
 
 } // namespace edges

@@ -17,12 +17,13 @@ double magnitude(const float* pixel, double scale) {
                              std::abs(double{pixel[2]})});
 }
 
-V3d directionOf(double cos_theta, double psi) {
-    const double s = std::sqrt(std::max(0.0, 1 - cos_theta * cos_theta));
-    return {s * std::cos(psi), s * std::sin(psi), cos_theta};
+V3d directionOf(double theta, double psi) {
+    const double s = std::sin(theta);
+    return {s * std::cos(psi), s * std::sin(psi), std::cos(theta)};
 }
 
-/// Gauss points over a rectangle in (psi, cos theta), with the pole along +Z.
+/// Gauss points over a rectangle in (psi, theta), with the pole along +Z. (In cos theta the pixels
+/// at the poles would not be smooth.)
 struct RectanglePoints {
     std::vector<V3d> directions;
     std::vector<double> weights; ///< summing to the solid angle
@@ -37,16 +38,19 @@ struct PeakRectangle {
 
 RectanglePoints pointsIn(const PeakRectangle& r, double solid_angle, int n) {
     const GaussRule& rule = gaussRule(n);
-    const double z0 = std::cos(r.top), z1 = std::cos(r.bottom);
     RectanglePoints points;
+    double total = 0;
     for (int b = 0; b < n; ++b) {
         for (int a = 0; a < n; ++a) {
             const double x = 0.5 + 0.5 * rule.nodes[a], y = 0.5 + 0.5 * rule.nodes[b];
-            points.directions.push_back(
-                directionOf(z0 + (z1 - z0) * y, r.west + (r.east - r.west) * x));
-            points.weights.push_back(0.25 * rule.weights[a] * rule.weights[b] * solid_angle);
+            const double theta = r.top + (r.bottom - r.top) * y;
+            points.directions.push_back(directionOf(theta, r.west + (r.east - r.west) * x));
+            points.weights.push_back(rule.weights[a] * rule.weights[b] * std::sin(theta));
+            total += points.weights.back();
         }
     }
+    for (double& w : points.weights)
+        w *= solid_angle / total;
     return points;
 }
 
@@ -203,7 +207,7 @@ void addPeaks(const std::vector<Peak>& peaks, int width, int height, const Lobe&
     const PeakLobe peak_lobe{lobe, LobeMassBeyond(lobe), lobeWidth(lobe), 1 / lobeIntegral(lobe)};
     for (std::size_t i = 0; i < u.size(); ++i) {
         const Axis axis = makeAxis(u[i], v[i]);
-        const V3d x = directionOf(axis.cos_theta, axis.psi);
+        const V3d x = directionOf(axis.theta, axis.psi);
         for (std::size_t p = 0; p < peaks.size(); ++p) {
             const double mass = peakMass(rectangles[p], peak_lobe, axis, x);
             for (int c = 0; c < 3; ++c)

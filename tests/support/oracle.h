@@ -28,7 +28,18 @@ std::vector<std::array<double, 3>> convolve(const Image& probe, const LobeFuncti
                                             const std::vector<Direction>& directions,
                                             double tolerance = 1e-7);
 
+/// The same for lobes much narrower than a pixel: rectangles are divided until they are smaller
+/// than half their distance from the axis, or than `width`, over which the lobe is smooth; then 5 x
+/// 5 Gauss points.
+std::array<double, 3> convolveNarrow(const Image& probe, const LobeFunction& lobe, double width,
+                                     const Direction& direction);
+
 /// The kernel's integral over the sphere.
 double integral(const LobeFunction& lobe);
+
+/// Direction of the centre of texel (i, j) of face `face` (+X -X +Y -Y +Z -Z, OpenGL), or of the
+/// point (i, j) in between, and its solid angle to first order.
+Direction cubeDirection(int face, double i, double j, int edge);
+double cubeWeight(double i, double j, int edge);
 
 } // namespace ibl::oracle
