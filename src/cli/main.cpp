@@ -58,8 +58,10 @@ void runCommandLine(int argc, char** argv) {
 } // namespace ibl
 
 int main(int argc, char** argv) {
-    // A reader that has gone away is an output that cannot be written, not a reason to vanish.
+    // A reader that has gone away and a limit on file sizes are outputs that cannot be written, not
+    // reasons to vanish.
     std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);
     try {
         ibl::runCommandLine(argc, argv);
         std::cout.flush();
