@@ -20,8 +20,8 @@ constexpr int kTailBands = 64;
 
 /// Nanoseconds on one core, measured.
 struct Costs {
-    static constexpr double kLegendre = 0.35; ///< a cubed degree, analysis or synthesis
-    static constexpr double kGrid = 100;      ///< a squared degree: transforms of the synthesis
+    static constexpr double kLegendre = 0.4;  ///< a cubed degree, analysis or synthesis
+    static constexpr double kGrid = 300;      ///< a squared degree: transforms of the synthesis
     static constexpr double kPeak = 40;       ///< a peak and a point, by Gauss points
     static constexpr double kPeakEdges = 800; ///< the same by edges, where lobes are narrow
 };
