@@ -22,16 +22,12 @@ void loadRows(const Image& probe, int first, int channel, double scale, double t
               ComplexLanes* data) {
     for (int lane = 0; lane < kRowsAtOnce; ++lane) {
         const int j = first + lane;
-        if (j >= probe.height) {
-            for (int i = 0; i < probe.width; ++i) {
-                (lane < kLanes ? data[i].re : data[i].im)[lane % kLanes] = 0;
-            }
-            continue;
-        }
-        const float* in = probe.row(j) + channel;
+        Lanes ComplexLanes::*const part = lane < kLanes ? &ComplexLanes::re : &ComplexLanes::im;
+        const float* in = j < probe.height ? probe.row(j) + channel : nullptr;
         for (int i = 0; i < probe.width; ++i) {
-            (lane < kLanes ? data[i].re : data[i].im)[lane % kLanes] = std::clamp(
-                scale * in[static_cast<std::ptrdiff_t>(i) * probe.channels], -threshold, threshold);
+            const double value =
+                in ? scale * in[static_cast<std::ptrdiff_t>(i) * probe.channels] : 0.0;
+            (data[i].*part)[lane % kLanes] = std::clamp(value, -threshold, threshold);
         }
     }
 }
