@@ -1,5 +1,6 @@
 #include "convolve/narrow.h"
 
+#include "convolve/error_bound.h"
 #include "panorama/conventions.h"
 
 #include <algorithm>
@@ -8,154 +9,98 @@
 namespace ibl {
 namespace {
 
-constexpr double kTaper = 3;
-constexpr double kTableReach = 100; ///< of the table, in units of 1 / degree
-constexpr int kTableDensity = 8;    ///< samples per 1 / degree
+/// Farther than this from a peak its part varies little over a texel.
+constexpr double kNearTexels = 6;
 
-/// M_smooth(t) = sum k_l (P_(l-1) - P_(l+1)) / 2, and for l = 0 (1 - P_1) / 2.
-double smoothMass(const std::vector<double>& k, double t) {
-    const double x = std::cos(t), s = std::sin(0.5 * t);
-    double before = 1, here = x; // P_(l-1), P_l
-    double mass = k[0] * s * s;
-    for (std::size_t l = 1; l < k.size(); ++l) {
-        const double after = ((2.0 * l + 1) * x * here - l * before) / (l + 1.0);
-        mass += 0.5 * k[l] * (before - after);
-        before = here;
-        here = after;
-    }
-    return mass;
+/// 1 at l = 0, a half at 3/4 of the degree, 2e-3 at the degree.
+double taper(int l, int degree) {
+    return 0.5 * std::erfc(8 * (static_cast<double>(l) / degree - 0.75));
 }
 
-int wrappedColumn(int i, int width) {
-    return ((i % width) + width) % width;
+/// How much of a wave of degree l the mean over a square of that many radians keeps, at the most:
+/// the envelope of sin(x) / x, x = l texel / 2.
+double footprintGain(int l, double texel) {
+    return std::min(1.0, 2 / (l * texel));
 }
-
-/// Where the core's disc meets a parallel: half of its range of azimuths, pi when all of it.
-double halfWidthAt(const Axis& axis, double theta, double radius) {
-    const double s2 = std::sin(theta) * axis.sin_theta;
-    const double gap = std::sin(0.5 * (theta - axis.theta)), reach = std::sin(0.5 * radius);
-    const double room = reach * reach - gap * gap;
-    if (room <= 0) return 0;
-    if (room >= s2) return kPi;
-    return 2 * std::asin(std::sqrt(room / s2));
-}
-
-struct Accumulator {
-    const Image& probe;
-    double* sum;
-
-    void add(const float* left, const float* right, double weight) const {
-        for (int c = 0; c < 3; ++c)
-            sum[c] += weight * (double{left[c]} - double{right[c]});
-    }
-    static bool same(const float* a, const float* b) {
-        return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
-    }
-};
 
 } // namespace
 
-std::vector<double> smoothCoefficients(const Lobe& lobe, int degree) {
-    std::vector<double> k = zonalCoefficients(lobe, degree + 1);
+NarrowLobe makeNarrowLobe(const Lobe& lobe, int degree) {
+    const std::vector<double> k = zonalCoefficients(lobe, degree + 1);
+    NarrowLobe narrow;
+    narrow.area = k[static_cast<std::size_t>(3 * degree / 4)];
     for (int l = 0; l <= degree; ++l) {
-        k[l] *= std::erfc(kTaper * (2.0 * l / degree - 1)) / std::erfc(-kTaper);
+        const double rest = k[static_cast<std::size_t>(l)] - narrow.area, h = taper(l, degree);
+        narrow.k.push_back(rest * h);
+        narrow.error.push_back(std::abs(rest) * (1 - h));
     }
-    return k;
+    // Beyond the degree k_l goes on to fall, about as exp(-decay l).
+    narrow.decay = -std::log(std::max(k.back(), 1e-300)) / degree;
+    return narrow;
 }
 
-double LobeCore::operator()(double h) const {
-    if (smooth_mass.empty()) return -mass_beyond(h);
-    const double within = h <= inner_h ? inner_mass : 1 - mass_beyond(h);
-    // Cubic Lagrange interpolation of the smooth mass, which is even in t.
-    const double x = 2 * std::asin(std::sqrt(h)) / step;
-    const std::size_t i = static_cast<std::size_t>(x);
-    if (i + 2 >= smooth_mass.size()) return 0;
-    const double t = x - static_cast<double>(i);
-    const double y0 = smooth_mass[i == 0 ? 1 : i - 1], y1 = smooth_mass[i], y2 = smooth_mass[i + 1],
-                 y3 = smooth_mass[i + 2];
-    const double smooth = -t * (t - 1) * (t - 2) / 6 * y0 + (t + 1) * (t - 1) * (t - 2) / 2 * y1 -
-                          (t + 1) * t * (t - 2) / 2 * y2 + (t + 1) * t * (t - 1) / 6 * y3;
-    return within - smooth;
-}
-
-LobeCore makeCore(const Lobe& lobe, const std::vector<double>& smooth, double inner,
-                  double tolerance) {
-    LobeCore core{LobeMassBeyond(lobe), {0, 0}, 0, 0, 0, {}};
-    core.inner_h = std::sin(0.5 * inner) * std::sin(0.5 * inner);
-    core.inner_mass = inner > 0 ? 1 - core.mass_beyond(core.inner_h) : 0;
-    const double degree = static_cast<double>(smooth.size()) - 1;
-    core.step = 1 / (kTableDensity * degree);
-    core.disc.variation = 16 / degree;
-    const int count = static_cast<int>(std::min(kTableReach / degree, 0.5 * kPi) / core.step);
-    core.smooth_mass.resize(count + 3);
-    for (int i = 0; i < count + 3; ++i)
-        core.smooth_mass[i] = smoothMass(smooth, i * core.step);
-    int last = count;
-    while (last > 1) {
-        const double s = std::sin(0.5 * last * core.step);
-        if (std::abs(core(s * s)) > tolerance) break;
-        --last;
+double narrowError(const NarrowLobe& lobe, const std::vector<double>& power, double energy,
+                   double texel) {
+    double sum = 0;
+    const int degree = static_cast<int>(lobe.k.size()) - 1;
+    for (int l = 1; l <= degree; ++l) {
+        const double e = lobe.error[static_cast<std::size_t>(l)] * footprintGain(l, texel);
+        sum += e * e * power[static_cast<std::size_t>(l)];
     }
-    core.disc.radius = (last + 1) * core.step;
-    return core;
+    double beyond = 0;
+    for (double l = degree; l < 1e3 * degree; l *= 1.1) {
+        const double e = std::abs(std::exp(-lobe.decay * l) - lobe.area);
+        beyond = std::max(beyond, e * footprintGain(static_cast<int>(l), texel));
+    }
+    sum += beyond * beyond * energyBeyond(power, energy).back();
+    return std::sqrt(sum);
 }
 
-LobeCore makeWholeCore(const Lobe& lobe) {
-    return {LobeMassBeyond(lobe), {0.5 * kPi, 0.2}, 0, 0, 0, {}};
-}
-
-void addCore(const LobeCore& core, const Image& probe, double scale, const Axis& axis,
-             double* sum) {
+void addNarrowPeaks(const std::vector<Peak>& peaks, const Image& probe, const Lobe& lobe,
+                    double texel, const Footprint& footprint, const RowPoints& points,
+                    const std::vector<double>& area_row, std::vector<double>& texels) {
     const int w = probe.width, h = probe.height;
-    const double row_step = kPi / h, column_step = 2 * kPi / w, factor = scale / (2 * kPi);
-    const Accumulator out{probe, sum};
-    const int own_row = std::clamp(static_cast<int>(axis.theta / row_step), 0, h - 1);
-    const int own_column = static_cast<int>(std::floor(axis.psi / column_step));
-    // M(pi) of the core: the smooth part has all of the lobe's mass and the innermost part's share
-    // is with the area-filtered map.
-    const float* own = probe.at(wrappedColumn(own_column, w), own_row);
-    const double mass = (core.smooth_mass.empty() ? 1 : 0) - core.inner_mass;
-    for (int c = 0; c < 3; ++c)
-        sum[c] += scale * mass * own[c];
-
-    const int first = std::max(0, static_cast<int>((axis.theta - core.disc.radius) / row_step));
-    const int last = std::min(h - 1, static_cast<int>((axis.theta + core.disc.radius) / row_step));
-    for (int j = first; j <= last; ++j) {
-        const double top = row_step * j, bottom = row_step * (j + 1);
-        // Parallel between rows j and j + 1.
-        if (j < last) {
-            const double reach = halfWidthAt(axis, bottom, core.disc.radius);
-            const int west = static_cast<int>(std::floor((axis.psi - reach) / column_step));
-            const int count = std::min(
-                w, static_cast<int>(std::floor((axis.psi + reach) / column_step)) - west + 1);
-            for (int i = west; reach > 0 && i < west + count; ++i) {
-                const int column = wrappedColumn(i, w);
-                const float *above = probe.at(column, j), *below = probe.at(column, j + 1);
-                if (Accumulator::same(above, below)) continue;
-                const double integral =
-                    parallelIntegral(core, core.disc, axis, bottom, i * column_step - axis.psi,
-                                     (i + 1) * column_step - axis.psi);
-                out.add(above, below, factor * integral);
+    std::vector<V3d> places;
+    for (const Peak& peak : peaks)
+        places.push_back(latlongDirection((peak.column + 0.5) / w, (peak.row + 0.5) / h));
+    const double diameter = 2 * lobeWidth(lobe);
+    const double spacing = footprint.scale * texel / std::sqrt(points.per_texel);
+    const double inner_s = diameter < spacing ? std::sin(0.25 * spacing) : 0;
+    const double inner = inner_s > 0 ? 1 - LobeMassBeyond(lobe)(inner_s * inner_s) : 0;
+    const double near = std::cos(std::min(kPi, kNearTexels * texel + 2 * kPi / w + kPi / h));
+    const auto insideOf = [&](const Peak& peak, double u, double v) {
+        return static_cast<int>(u * w) % w == peak.column &&
+               std::min(static_cast<int>(v * h), h - 1) == peak.row;
+    };
+    for (std::size_t t = 0; t < points.column.size(); ++t) {
+        const auto first = static_cast<std::ptrdiff_t>(t) * points.per_texel;
+        std::vector<double> u(points.u.begin() + first,
+                              points.u.begin() + first + points.per_texel);
+        std::vector<double> v(points.v.begin() + first,
+                              points.v.begin() + first + points.per_texel);
+        std::vector<double> share(points.share.begin() + first,
+                                  points.share.begin() + first + points.per_texel);
+        const V3d centre = latlongDirection(u[u.size() / 2], v[v.size() / 2]);
+        const bool is_near = std::any_of(places.begin(), places.end(),
+                                         [&](const V3d& p) { return p.dot(centre) > near; });
+        if (!is_near) {
+            u = {u[u.size() / 2]};
+            v = {v[v.size() / 2]};
+            share = {1};
+        }
+        std::vector<double> values(3 * u.size(), 0.0);
+        addPeaks(peaks, w, h, lobe, u, v, values.data());
+        for (std::size_t i = 0; i < u.size(); ++i) {
+            for (const Peak& peak : peaks) {
+                const double own = is_near && insideOf(peak, u[i], v[i]) ? inner : 0;
+                for (int c = 0; c < 3; ++c)
+                    values[3 * i + c] -= own * peak.excess[c];
             }
+            for (int c = 0; c < 3; ++c)
+                texels[3 * t + c] += share[i] * values[3 * i + c];
         }
-        // Meridians between the columns of row j.
-        const double widest = std::max({halfWidthAt(axis, top, core.disc.radius),
-                                        halfWidthAt(axis, bottom, core.disc.radius),
-                                        axis.theta > top && axis.theta < bottom
-                                            ? halfWidthAt(axis, axis.theta, core.disc.radius)
-                                            : 0.0});
-        if (widest <= 0) continue;
-        const int west = static_cast<int>(std::floor((axis.psi - widest) / column_step)) - 1;
-        const int count =
-            std::min(w, static_cast<int>(std::floor((axis.psi + widest) / column_step)) + 1 - west);
-        for (int i = west + 1; i <= west + count; ++i) {
-            const float *left = probe.at(wrappedColumn(i - 1, w), j),
-                        *right = probe.at(wrappedColumn(i, w), j);
-            if (Accumulator::same(left, right)) continue;
-            out.add(left, right,
-                    factor * meridianIntegral(core, core.disc, axis, i * column_step - axis.psi,
-                                              top, bottom));
-        }
+        for (int c = 0; c < 3; ++c)
+            texels[3 * t + c] += inner * area_row[3 * t + c];
     }
 }
 

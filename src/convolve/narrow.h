@@ -1,53 +1,51 @@
 // Lobes too narrow for a band limit.
 //
-// The lobe is split into K = K_smooth + K_core. K_smooth has the lobe's coefficients under a taper,
+// Up to the highest degree B that is worth its cost the lobe is known by its coefficients k_l.
+// Beyond, all that can be said cheaply is a constant: about 1 where the lobe is so much narrower
+// than 1 / B that it leaves what is there alone, about 0 where it removes it. With m = k_(3B/4) and
+// a taper h_l that falls from 1 to 0 about 3B/4, the result is
 //
-//     h_l = erfc(3 (2 l / B - 1)) / erfc(-3),
+//     m A + sum over l <= B of (k_l - m) h_l L_lm Y_lm,
 //
-// and is synthesised as any other field. What is left, K_core, is compact: the taper is a smooth
-// step whose spatial counterpart falls like exp(-(l-width t)^2 / 2), so beyond about 40 / B radians
-// nothing of it remains and there is no ringing. It is convolved in space over the edges of the
-// pixels near the axis (edges.h), which is exact for lobes much narrower than a pixel.
+// A the probe's mean over the texel (the area filter of panorama/resample.h). For roughness 0 it is
+// A itself; where k_B is small it is the band-limited convolution; from the one to the other it
+// goes without a step. What it leaves out is (k_l - m)(1 - h_l) of the degrees beyond about B/2.
+// Beside a sun that would be seen, so L and A are those of the probe without its brightest pixels,
+// and these are convolved directly: over the points of a texel near them, at the centre of others.
 //
-// A texel larger than the lobe gets the mean over its footprint. The core is then sampled at points
-// spread over the texel, and of the lobe's innermost part, whose edges would fall between the
-// points, the mean over the texel is that of the probe itself (`inner_mass` times the area-filtered
-// map).
+// Measured (tests/unit/convolve/narrow_test.cpp and tests/bench/convolve): convolving the core in
+// space, over the edges of the pixels within its reach, was exact but took 5 to 240 us a point and
+// up to 256 points a texel, minutes for a map.
 #pragma once
 
-#include "convolve/edges.h"
 #include "convolve/lobe.h"
+#include "convolve/peaks.h"
+#include "convolve/texels.h"
 #include "image/image.h"
 
 #include <vector>
 
 namespace ibl {
 
-/// The smooth part's coefficients k_l h_l, l = 0 .. degree.
-std::vector<double> smoothCoefficients(const Lobe& lobe, int degree);
-
-/// Q = M - M(pi) of K_core, and how far from the axis it reaches.
-struct LobeCore {
-    LobeMassBeyond mass_beyond;
-    Disc disc;                       ///< beyond its radius Q is negligible
-    double inner_mass = 0;           ///< mass within inner_h, left to the area-filtered map
-    double inner_h = 0;              ///< sin^2(rho/2) of the innermost part
-    double step = 0;                 ///< of the table
-    std::vector<double> smooth_mass; ///< M_smooth at t = i step; none: it is M(pi), 1
-
-    /// Q at h = sin^2(t/2) within the radius.
-    double operator()(double h) const;
+struct NarrowLobe {
+    double area = 0;           ///< m
+    std::vector<double> k;     ///< (k_l - m) h_l, l = 0 .. B
+    std::vector<double> error; ///< |(k_l - m)(1 - h_l)|, l = 0 .. B
+    double decay = 0;          ///< beyond B k_l is about exp(-decay l)
 };
 
-/// The core left by `smooth`, down to `tolerance` of the lobe's mass, less what lies within `inner`
-/// radians of the axis.
-LobeCore makeCore(const Lobe& lobe, const std::vector<double>& smooth, double inner,
-                  double tolerance);
+NarrowLobe makeNarrowLobe(const Lobe& lobe, int degree);
 
-/// The whole lobe as a core: nothing of it is smooth.
-LobeCore makeWholeCore(const Lobe& lobe);
+/// Norm over the sphere of what is left out, from the power of each of the probe's degrees and its
+/// `energy` in all. The texel's footprint, `texel` radians, takes its part of the high degrees.
+double narrowError(const NarrowLobe& lobe, const std::vector<double>& power, double energy,
+                   double texel);
 
-/// Adds (K_core * L) in the direction of the axis, L the probe times `scale`: sum[c], c < 3.
-void addCore(const LobeCore& core, const Image& probe, double scale, const Axis& axis, double* sum);
+/// Adds the peaks' part to one row of a map. Of the lobe's innermost part, which falls between a
+/// texel's points, the mean is that of the area filter: `area_row` is what the peaks add to the
+/// area-filtered map's row. `texel` is the texel's angle, `probe` the extent.
+void addNarrowPeaks(const std::vector<Peak>& peaks, const Image& probe, const Lobe& lobe,
+                    double texel, const Footprint& footprint, const RowPoints& points,
+                    const std::vector<double>& area_row, std::vector<double>& texels);
 
 } // namespace ibl

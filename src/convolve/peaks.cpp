@@ -216,4 +216,12 @@ void addPeaks(const std::vector<Peak>& peaks, int width, int height, const Lobe&
     }
 }
 
+Image clampedProbe(const Image& probe, double scale, double threshold) {
+    Image clamped = probe;
+    const float most = static_cast<float>(threshold / scale);
+    for (float& value : clamped.pixels)
+        value = std::clamp(value, -most, most);
+    return clamped;
+}
+
 } // namespace ibl

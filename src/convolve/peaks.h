@@ -56,4 +56,7 @@ std::vector<Peak> splitPeaks(const ProbeStatistics& statistics, double threshold
 void addPeaks(const std::vector<Peak>& peaks, int width, int height, const Lobe& lobe,
               const std::vector<double>& u, const std::vector<double>& v, double* values);
 
+/// The probe with every value within +-threshold (in the statistics' scale): what the peaks leave.
+Image clampedProbe(const Image& probe, double scale, double threshold);
+
 } // namespace ibl

@@ -1,6 +1,5 @@
 #include "convolve/plan.h"
 
-#include "convolve/narrow.h"
 #include "convolve/texels.h"
 #include "core/parallel.h"
 #include "panorama/conventions.h"
@@ -13,8 +12,12 @@
 namespace ibl {
 namespace {
 
-/// Above this degree the Legendre sums, which grow with its cube, cost more than a core in space.
+/// Highest degrees, by the cost of the Legendre sums, which grows with the cube: a wide lobe that
+/// needs more has a horizon, against which only peaks help; a narrow one is worth 3 s of one core.
 constexpr int kMostDegree = 768;
+constexpr int kMostDegreeOfNarrow = 1536;
+/// Where a lobe is narrower than even that can show: 0.9 s of one core.
+constexpr int kNarrowDegree = 1024;
 /// Coefficients known beyond it, from which the tail's envelope is read.
 constexpr int kTailBands = 64;
 
@@ -35,6 +38,15 @@ double texelsOf(const PrefilterRequest& request) {
                                                                              : 2 * n * n;
 }
 
+/// Whether what harmonics cannot hold of a lobe is its core, not its horizon.
+bool isNarrow(const Lobe& lobe) {
+    return lobeWidth(lobe) < 0.1;
+}
+
+int mostDegree(const Lobe& lobe) {
+    return isNarrow(lobe) ? kMostDegreeOfNarrow : kMostDegree;
+}
+
 /// Cost of the plan's harmonic lobes when each needs degree degrees[i] and `peaks` are split from a
 /// probe whose pixels are `pixel` radians wide.
 double costOf(const std::vector<int>& degrees, std::span<const PrefilterRequest> requests,
@@ -45,9 +57,10 @@ double costOf(const std::vector<int>& degrees, std::span<const PrefilterRequest>
     for (std::size_t i = 0; i < degrees.size(); ++i) {
         if (degrees[i] < 0) continue;
         const double d = degrees[i];
-        if (d > kMostDegree) cost += kUnmet;
+        if (d > mostDegree(requests[i].lobe)) cost += kUnmet;
         cost += Costs::kLegendre * cube(d) + Costs::kGrid * d * d;
-        const Footprint footprint = footprintOf(requests[i].lobe, texelAngle(requests[i]));
+        const Footprint footprint =
+            footprintOf(requests[i].lobe, texelAngle(requests[i]), degrees[i]);
         const bool smooth = 2 * pixel < lobeWidth(requests[i].lobe);
         cost += (smooth ? Costs::kPeak : Costs::kPeakEdges) * peaks * texelsOf(requests[i]) *
                 footprint.samples * footprint.samples;
@@ -56,15 +69,18 @@ double costOf(const std::vector<int>& degrees, std::span<const PrefilterRequest>
     return cost + Costs::kLegendre * cube(most);
 }
 
-/// Whether what harmonics cannot hold of a lobe is its core. (Else it is its horizon, and only more
-/// peaks help.)
-bool isNarrow(const Lobe& lobe) {
-    return lobeWidth(lobe) < 0.1;
-}
-
-/// A degree that the core's reach, about 40 / degree, keeps within a dozen pixels.
-int narrowDegree(int probe_width) {
-    return std::clamp(probe_width / 2, 96, 1024);
+/// Splits off as few peaks as leave a probe whose root mean square is a few times its mean: what
+/// Method::narrow leaves out is in proportion to it.
+double narrowThreshold(const ProbeStatistics& probe) {
+    double mean = 0;
+    for (const double a : probe.absolute)
+        mean += a * a / (4 * kPi);
+    double threshold = 0;
+    for (const int peaks : {0, 1, 4, 16, 64}) {
+        threshold = peakThreshold(probe, peaks);
+        if (clampedEnergy(probe, threshold) <= 9 * mean) break;
+    }
+    return threshold;
 }
 
 } // namespace
@@ -108,6 +124,7 @@ double referenceNorm(const ProbeStatistics& probe, const std::vector<double>& k)
 Plan makePlan(const ProbeStatistics& probe, std::span<const PrefilterRequest> requests,
               double max_error, int probe_width, int threads) {
     Plan plan;
+    plan.narrow_threshold = narrowThreshold(probe);
     plan.lobes.resize(requests.size());
     std::vector<double> allowed(requests.size());
     parallelFor(requests.size(), threads, [&](std::size_t i) {
@@ -116,7 +133,7 @@ Plan makePlan(const ProbeStatistics& probe, std::span<const PrefilterRequest> re
             lobe.method = Method::area;
             return;
         }
-        lobe.k = zonalCoefficients(requests[i].lobe, kMostDegree + kTailBands);
+        lobe.k = zonalCoefficients(requests[i].lobe, mostDegree(requests[i].lobe) + kTailBands);
         allowed[i] = 0.5 * max_error * referenceNorm(probe, lobe.k);
     });
 
@@ -128,8 +145,9 @@ Plan makePlan(const ProbeStatistics& probe, std::span<const PrefilterRequest> re
         std::vector<int> degrees(requests.size(), -1);
         for (std::size_t i = 0; i < requests.size(); ++i) {
             if (plan.lobes[i].method == Method::area) continue;
-            degrees[i] = leastDegree(plan.lobes[i].k, kMostDegree, allowed[i], energy);
-            if (degrees[i] > kMostDegree && isNarrow(requests[i].lobe)) degrees[i] = -1;
+            const int most = mostDegree(requests[i].lobe);
+            degrees[i] = leastDegree(plan.lobes[i].k, most, allowed[i], energy);
+            if (degrees[i] > most && isNarrow(requests[i].lobe)) degrees[i] = -1;
         }
         const double cost = costOf(degrees, requests, peaks, 2 * kPi / probe_width);
         if (cost >= best) continue;
@@ -142,11 +160,10 @@ Plan makePlan(const ProbeStatistics& probe, std::span<const PrefilterRequest> re
     for (std::size_t i = 0; i < requests.size(); ++i) {
         LobePlan& lobe = plan.lobes[i];
         if (lobe.method == Method::area) continue;
-        lobe.degree = std::min(chosen[i], kMostDegree);
+        lobe.degree = std::min(chosen[i], mostDegree(requests[i].lobe));
         if (chosen[i] < 0) {
             lobe.method = Method::narrow;
-            lobe.degree = narrowDegree(probe_width);
-            lobe.k = smoothCoefficients(requests[i].lobe, lobe.degree);
+            lobe.degree = kNarrowDegree;
         } else {
             plan.degree = std::max(plan.degree, lobe.degree);
         }

@@ -22,7 +22,7 @@ namespace ibl {
 enum class Method {
     area,      ///< mirrors: the area-filtered probe
     harmonics, ///< a band limit, and the peaks directly
-    narrow,    ///< a smooth part in harmonics and a core in space (narrow.h)
+    narrow,    ///< harmonics as far as they go, the area-filtered probe beyond (narrow.h)
 };
 
 struct LobePlan {
@@ -34,7 +34,8 @@ struct LobePlan {
 struct Plan {
     double threshold = 0; ///< for the analysis that Method::harmonics uses
     int peaks = 0;
-    int degree = 0; ///< of that analysis
+    int degree = 0;              ///< of that analysis
+    double narrow_threshold = 0; ///< for the analysis that Method::narrow uses
     std::vector<LobePlan> lobes;
 };
 

@@ -1,6 +1,7 @@
 #include "convolve/prefilter.h"
 
 #include "convolve/analysis.h"
+#include "convolve/direct.h"
 #include "convolve/error_bound.h"
 #include "convolve/narrow.h"
 #include "convolve/plan.h"
@@ -71,12 +72,20 @@ double scaleOf(const Image& probe, int threads) {
     return most > 0 ? std::ldexp(1.0, -std::ilogb(most)) : 1;
 }
 
+/// What Method::narrow adds to the harmonics.
+struct NarrowParts {
+    double area_share; ///< of the next
+    Image area;        ///< the area-filtered probe without its peaks
+    Image whole_area;  ///< and with them; as `area` when there are none
+    const std::vector<Peak>& peaks;
+};
+
 /// What an output's rows are made from; absent parts are null.
 struct Ingredients {
     const SmoothField* field = nullptr;
     const std::vector<Peak>* peaks = nullptr;
-    const LobeCore* core = nullptr;
-    const Image* area = nullptr; ///< area-filtered map, by the core's inner mass
+    const DirectLobe* direct = nullptr;
+    const NarrowParts* narrow = nullptr;
 };
 
 struct Probe {
@@ -84,6 +93,23 @@ struct Probe {
     double scale;
     bool negative;
 };
+
+void addNarrowRow(const Probe& probe, const PrefilterRequest& request, const Footprint& footprint,
+                  const NarrowParts& parts, const RowPoints& points, int y,
+                  std::vector<double>& texels) {
+    std::vector<double> of_peaks(texels.size());
+    for (std::size_t t = 0; t < points.column.size(); ++t) {
+        const float *area = parts.area.at(points.column[t], y),
+                    *whole = parts.whole_area.at(points.column[t], y);
+        for (int c = 0; c < 3; ++c) {
+            texels[3 * t + c] = parts.area_share * probe.scale * area[c];
+            of_peaks[3 * t + c] = probe.scale * (double{whole[c]} - double{area[c]});
+        }
+    }
+    if (parts.peaks.empty()) return;
+    addNarrowPeaks(parts.peaks, probe.image, request.lobe, texelAngle(request), footprint, points,
+                   of_peaks, texels);
+}
 
 /// Fills row y of the map.
 void fillRow(const Probe& probe, const PrefilterRequest& request, const Footprint& footprint,
@@ -101,9 +127,13 @@ void fillRow(const Probe& probe, const PrefilterRequest& request, const Footprin
         addPeaks(*parts.peaks, probe.image.width, probe.image.height, request.lobe, points.u,
                  points.v, values.data());
     }
-    for (std::size_t i = 0; parts.core && i < count; ++i) {
-        addCore(*parts.core, probe.image, probe.scale, makeAxis(points.u[i], points.v[i]),
-                &values[3 * i]);
+    for (std::size_t i = 0; parts.direct && i < count; ++i) {
+        addDirect(*parts.direct, probe.image, probe.scale, makeAxis(points.u[i], points.v[i]),
+                  &values[3 * i]);
+    }
+    std::vector<double> narrow(3 * points.column.size(), 0.0);
+    if (parts.narrow) {
+        addNarrowRow(probe, request, footprint, *parts.narrow, points, y, narrow);
     }
     float* out = map.row(y);
     std::fill(out, out + map.rowFloats(), 0.0f);
@@ -115,9 +145,7 @@ void fillRow(const Probe& probe, const PrefilterRequest& request, const Footprin
                 const std::size_t i = t * points.per_texel + s;
                 value += points.share[i] * values[3 * i + c];
             }
-            value /= probe.scale;
-            if (parts.area)
-                value += parts.core->inner_mass * parts.area->at(points.column[t], y)[c];
+            value = (value + narrow[3 * t + c]) / probe.scale;
             // Rounding and the truncated tails may leave a little below zero beside a sun; a mean
             // of non-negative radiance is not.
             if (!probe.negative) value = std::max(0.0, value);
@@ -144,8 +172,9 @@ struct Engine {
     Plan plan;
     std::vector<Peak> peaks;
     std::optional<Harmonics> clamped; ///< of the probe without its peaks, for Method::harmonics
-    std::optional<Harmonics> whole;   ///< of the whole probe, for Method::narrow
-    std::vector<double> power;        ///< of `clamped`
+    std::vector<Peak> narrow_peaks;
+    std::optional<Harmonics> narrow; ///< of the probe without these, for Method::narrow
+    std::vector<double> power;       ///< of `clamped`
     double clamped_energy = 0;
     double seconds = 0;
 };
@@ -168,7 +197,7 @@ Engine analyseProbe(const Image& image, std::span<const PrefilterRequest> reques
     const int threads = options.threads;
     const double scale = scaleOf(image, threads);
     Engine engine{
-        {image, scale, false}, measureProbe(image, scale, threads), {}, {}, {}, {}, {}, 0, 0};
+        {image, scale, false}, measureProbe(image, scale, threads), {}, {}, {}, {}, {}, {}, 0, 0};
     engine.probe.negative = engine.statistics.negative;
     if (options.reference) return engine;
     engine.plan = makePlan(engine.statistics, requests, options.max_error, image.width, threads);
@@ -181,8 +210,9 @@ Engine analyseProbe(const Image& image, std::span<const PrefilterRequest> reques
         engine.power = powerSpectrum(*engine.clamped);
     }
     if (const int degree = narrowDegreeOf(plan); degree >= 0) {
-        const double all = peakThreshold(engine.statistics, 0);
-        engine.whole = analyse(analyseRows(image, scale, all, degree, threads), degree, threads);
+        engine.narrow_peaks = splitPeaks(engine.statistics, plan.narrow_threshold);
+        engine.narrow = analyse(analyseRows(image, scale, plan.narrow_threshold, degree, threads),
+                                degree, threads);
     }
     engine.seconds = watch.seconds();
     return engine;
@@ -205,14 +235,13 @@ PrefilterResult areaFiltered(const Engine& engine, const PrefilterRequest& reque
     return result;
 }
 
-/// The direct sum: the core of a lobe of which no part is smooth.
 PrefilterResult directSum(const Engine& engine, const PrefilterRequest& request, int threads) {
     const Stopwatch watch;
     PrefilterResult result = emptyResult(request);
-    const LobeCore core = makeWholeCore(request.lobe);
-    const Footprint footprint = footprintOf(request.lobe, texelAngle(request));
+    const DirectLobe direct = makeDirectLobe(request.lobe);
+    const Footprint footprint = footprintOf(request.lobe, texelAngle(request), kAnyDegree);
     Ingredients parts;
-    parts.core = &core;
+    parts.direct = &direct;
     MapNorm norm;
     fillMap(engine.probe, request, footprint, parts, threads, result.map.image, norm);
     result.seconds_spatial = watch.seconds();
@@ -233,8 +262,10 @@ PrefilterResult byHarmonics(const Engine& engine, const PrefilterRequest& reques
     parts.field = &field;
     parts.peaks = &engine.peaks;
     MapNorm norm;
-    fillMap(engine.probe, request, footprintOf(request.lobe, texelAngle(request)), parts, threads,
-            result.map.image, norm);
+    // Peaks have no highest degree.
+    const int highest = engine.peaks.empty() ? degree : kAnyDegree;
+    const Footprint footprint = footprintOf(request.lobe, texelAngle(request), highest);
+    fillMap(engine.probe, request, footprint, parts, threads, result.map.image, norm);
     result.band_limit = degree;
     result.peaks_split = static_cast<int>(engine.peaks.size());
     const SpectrumError error = spectrumError(lobe.k, engine.power, engine.clamped_energy, degree);
@@ -245,34 +276,36 @@ PrefilterResult byHarmonics(const Engine& engine, const PrefilterRequest& reques
     return result;
 }
 
-PrefilterResult byCore(const Engine& engine, const PrefilterRequest& request, const LobePlan& lobe,
-                       double max_error, int threads) {
+PrefilterResult byArea(const Engine& engine, const PrefilterRequest& request, const LobePlan& lobe,
+                       int threads) {
     const Stopwatch watch;
     PrefilterResult result = emptyResult(request);
-    const double texel = texelAngle(request), diameter = 2 * lobeWidth(request.lobe);
-    const Footprint footprint = footprintOf(request.lobe, texel);
-    const double spacing = footprint.scale * texel / footprint.samples;
-    const double inner = diameter < spacing ? 0.5 * spacing : 0;
-    const LobeCore core = makeCore(request.lobe, lobe.k, inner, 1e-3 * max_error);
-    const SmoothField field = synthesise(*engine.whole, lobe.k, lobe.degree, threads);
+    const NarrowLobe narrow = makeNarrowLobe(request.lobe, lobe.degree);
+    const SmoothField field = synthesise(*engine.narrow, narrow.k, lobe.degree, threads);
     result.seconds_synthesis = watch.seconds();
-    Panorama area;
+    const double scale = engine.probe.scale, threshold = engine.plan.narrow_threshold;
+    const auto areaOf = [&](Image probe) {
+        return resample({Layout::latlong, std::move(probe)}, request.layout, request.size, threads)
+            .image;
+    };
+    NarrowParts of_narrow{narrow.area, {}, areaOf(engine.probe.image), engine.narrow_peaks};
+    of_narrow.area = engine.narrow_peaks.empty()
+                         ? of_narrow.whole_area
+                         : areaOf(clampedProbe(engine.probe.image, scale, threshold));
     Ingredients parts;
     parts.field = &field;
-    parts.core = &core;
-    if (inner > 0) {
-        area =
-            resample({Layout::latlong, engine.probe.image}, request.layout, request.size, threads);
-        parts.area = &area.image;
-    }
+    parts.narrow = &of_narrow;
+    const double texel = texelAngle(request);
     MapNorm norm;
-    fillMap(engine.probe, request, footprint, parts, threads, result.map.image, norm);
+    fillMap(engine.probe, request, footprintOf(request.lobe, texel, lobe.degree), parts, threads,
+            result.map.image, norm);
     result.band_limit = lobe.degree;
-    // What the taper and the core's rim leave is a thousandth of the asked error, by construction.
-    // The footprint's quadrature has no bound of its own yet, and is the larger part where texels
-    // are much larger than the lobe.
-    result.error_bound = max_error;
-    result.error_estimate = 0.1 * max_error;
+    const std::vector<double> power = powerSpectrum(*engine.narrow);
+    const double error =
+        narrowError(narrow, power, clampedEnergy(engine.statistics, threshold), texel);
+    result.peaks_split = static_cast<int>(engine.narrow_peaks.size());
+    result.error_estimate = relative(error, norm.root() * scale, 0);
+    result.error_bound = kBoundOverEstimate * result.error_estimate;
     result.seconds_spatial = watch.seconds() - result.seconds_synthesis;
     return result;
 }
@@ -303,8 +336,7 @@ std::vector<PrefilterResult> prefilter(const Image& latlong,
             result = byHarmonics(engine, request, engine.plan.lobes[i], options.max_error,
                                  options.threads);
         } else {
-            result =
-                byCore(engine, request, engine.plan.lobes[i], options.max_error, options.threads);
+            result = byArea(engine, request, engine.plan.lobes[i], options.threads);
         }
         result.seconds_analysis = engine.seconds;
         results.push_back(std::move(result));

@@ -3,7 +3,7 @@
 // One spherical-harmonic analysis of the probe serves all requests; each output is one
 // multiplication by the lobe's zonal coefficients and one synthesis (Ramamoorthi and Hanrahan 2001,
 // 2002). What a band limit would lose is made good in space: bright pixels are split off and
-// convolved directly, and lobes too narrow for the band limit keep their core there.
+// convolved directly, and of lobes too narrow for it the area-filtered probe is the rest.
 #pragma once
 
 #include "convolve/lobe.h"
@@ -58,7 +58,7 @@ struct PrefilterResult {
     double error_estimate = 0;    ///< from the decay of the probe's measured spectrum
     double seconds_analysis = 0;  ///< transform of the probe; the same for all requests
     double seconds_synthesis = 0; ///< harmonics to texels
-    double seconds_spatial = 0;   ///< peaks and narrow cores, or the direct sum
+    double seconds_spatial = 0;   ///< peaks and texels, or the direct sum
 };
 
 /// Convolves the probe with every request's lobe. The probe is a lat-long RGB image of any size

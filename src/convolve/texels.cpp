@@ -1,6 +1,7 @@
 #include "convolve/texels.h"
 
 #include "convolve/gauss.h"
+#include "panorama/conventions.h"
 #include "panorama/layouts.h"
 
 #include <algorithm>
@@ -18,15 +19,30 @@ double density(Layout layout, const V3d& d) {
     return largest * largest * largest;
 }
 
+/// A rule of at least n points on [-1, 1]: Gauss's, for many points in equal parts.
+GaussRule footprintRule(int n) {
+    constexpr int kPart = 16;
+    if (n <= kPart) return gaussRule(n);
+    const int parts = (n + kPart - 1) / kPart;
+    GaussRule rule;
+    for (int part = 0; part < parts; ++part) {
+        for (int i = 0; i < kPart; ++i) {
+            rule.nodes.push_back((2 * part + 1 + gaussRule(kPart).nodes[i]) / parts - 1);
+            rule.weights.push_back(gaussRule(kPart).weights[i] / parts);
+        }
+    }
+    return rule;
+}
+
 /// Appends the points of texel (x, y).
 void addTexel(Layout layout, int width, int height, int x, int y, const Footprint& footprint,
               RowPoints& points) {
     // The texel is a rectangle in the image, so a product of Gauss rules has the highest order.
-    const GaussRule& rule = gaussRule(footprint.samples);
+    const GaussRule rule = footprintRule(footprint.samples);
     const std::size_t first = points.u.size();
     double total = 0;
-    for (int b = 0; b < footprint.samples; ++b) {
-        for (int a = 0; a < footprint.samples; ++a) {
+    for (std::size_t b = 0; b < rule.nodes.size(); ++b) {
+        for (std::size_t a = 0; a < rule.nodes.size(); ++a) {
             const double dx = 0.5 * footprint.scale * rule.nodes[a];
             const double dy = 0.5 * footprint.scale * rule.nodes[b];
             const V3d d = texelDirection(layout, width, height, x + 0.5 + dx, y + 0.5 + dy).value();
@@ -48,20 +64,23 @@ double texelAngle(const PrefilterRequest& request) {
     return (rows ? kPi : 0.5 * kPi) / request.size;
 }
 
-Footprint footprintOf(const Lobe& lobe, double texel) {
+Footprint footprintOf(const Lobe& lobe, double texel, int degree) {
     const double diameter = 2 * lobeWidth(lobe);
     Footprint footprint;
     footprint.scale = std::clamp(2 - diameter / texel, 0.0, 1.0);
     if (footprint.scale > 0) {
-        const double wanted = std::ceil(1 + 3 * footprint.scale * texel / diameter);
-        footprint.samples = static_cast<int>(std::clamp<double>(wanted, 2, kMostSamples));
+        const double extent = footprint.scale * texel;
+        const double for_lobe = 1 + 4 * extent / diameter;
+        const double for_waves = 2 + 1.2 * extent * degree / kPi; // Gauss: pi points a wave
+        footprint.samples = std::max(2, static_cast<int>(std::ceil(std::min(for_lobe, for_waves))));
     }
     return footprint;
 }
 
 RowPoints rowPoints(Layout layout, int width, int height, int y, const Footprint& footprint) {
     RowPoints points;
-    points.per_texel = footprint.samples * footprint.samples;
+    const std::size_t points_across = footprintRule(footprint.samples).nodes.size();
+    points.per_texel = static_cast<int>(points_across * points_across);
     for (int x = 0; x < width; ++x) {
         if (!texelDirection(layout, width, height, x + 0.5, y + 0.5)) continue;
         points.column.push_back(x);

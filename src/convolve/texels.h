@@ -15,15 +15,17 @@ struct Footprint {
     int samples = 1;
 };
 
-inline constexpr int kMostSamples = 16;
+/// The degree of a field that has none: only the lobe limits what is to be seen.
+inline constexpr int kAnyDegree = 1 << 20;
 
 /// The angle that a texel of the map covers, about.
 double texelAngle(const PrefilterRequest& request);
 
 /// Where a lobe's diameter (that of half its mass) is two texels or more, a texel is its centre's
 /// value; where it is one texel or less, the mean over the footprint; in between, the mean over the
-/// footprint shrunk in proportion. Points stand closer than the lobe is wide, up to kMostSamples.
-Footprint footprintOf(const Lobe& lobe, double texel);
+/// footprint shrunk in proportion. Points stand so close that neither the lobe nor a wave of the
+/// field's highest degree falls between them.
+Footprint footprintOf(const Lobe& lobe, double texel, int degree);
 
 /// The texels of one row of a map that have a direction, and their points.
 struct RowPoints {

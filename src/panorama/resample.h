@@ -10,7 +10,7 @@ namespace ibl {
 /// Where the new texels are larger than the source's pixels, each is the exact mean of the source
 /// over its solid angle (pixels are areas of constant radiance), so energy is kept to float
 /// rounding. Where they are smaller, the source is interpolated between pixel centres
-/// (`radianceAt`). Between the two, for texel pitches of 1 to 1.25 pixels, there is a smooth blend.
+/// (`radianceAt`). Between the two, for texel pitches of 0.8 to 1 pixels, there is a smooth blend.
 /// The same extent of the same layout, or the same face edge within the cube family, gives the same
 /// bits. A constant probe stays constant and a non-negative one non-negative. Cells of a cross
 /// outside its faces are 0.

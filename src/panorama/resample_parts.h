@@ -16,9 +16,9 @@ void cubeToLatlong(const Panorama& source, Panorama& result, int threads);
 void cubeToCube(const Panorama& source, Panorama& result, int threads);
 
 /// The share of the area filter (the rest is interpolation) where a new texel is `ratio` old pixels
-/// wide: none up to 1, all from 1.25 on, smooth between.
+/// wide: none up to 0.8, all from 1 on, smooth between.
 inline double areaShare(double ratio) {
-    const double x = std::clamp((ratio - 1) / 0.25, 0.0, 1.0);
+    const double x = std::clamp((ratio - 0.8) / 0.2, 0.0, 1.0);
     return x * x * (3 - 2 * x);
 }
 
