@@ -60,7 +60,7 @@ double costOf(const std::vector<int>& degrees, std::span<const PrefilterRequest>
         if (d > mostDegree(requests[i].lobe)) cost += kUnmet;
         cost += Costs::kLegendre * cube(d) + Costs::kGrid * d * d;
         const Footprint footprint =
-            footprintOf(requests[i].lobe, texelAngle(requests[i]), degrees[i]);
+            footprintOf(requests[i].lobe, texelAngle(requests[i]), kAnyDegree);
         const bool smooth = 2 * pixel < lobeWidth(requests[i].lobe);
         cost += (smooth ? Costs::kPeak : Costs::kPeakEdges) * peaks * texelsOf(requests[i]) *
                 footprint.samples * footprint.samples;
