@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -61,7 +62,7 @@ void bindProbe(CLI::App& app, ProbeOptions& options, const std::string& as) {
         ->group("Input");
 }
 
-void bindType(CLI::App& app, PixelType& type) {
+void bindType(CLI::App& app, std::optional<PixelType>& type) {
     app.add_option_function<std::string>(
            "--type",
            [&type](const std::string& text) {
@@ -118,7 +119,16 @@ WriteOptions writeOptions(const ImageOutputOptions& output, const CommonOptions&
                                      "--format");
     }
     WriteOptions options;
-    options.type = output.type;
+    options.type = output.type.value_or(PixelType::float32);
+    std::string format = output.format;
+    if (format.empty()) format = std::filesystem::path(output.output).extension().string();
+    for (const char* own : {"hdr", ".hdr", "pic", ".pic", "png", ".png", "jpg", ".jpg"}) {
+        if (output.type && format == own) {
+            throw Error(ExitCode::usage, output.output + ": " + own +
+                                             " has its own pixel type; leave "
+                                             "out --type, or write .exr");
+        }
+    }
     options.compression = output.compression;
     options.format = output.format;
     options.threads = common.threads;

@@ -32,7 +32,7 @@ struct ProbeOptions {
 struct ImageOutputOptions {
     std::string output;
     std::string format;
-    PixelType type = PixelType::float32;
+    std::optional<PixelType> type; ///< float when untold
     std::string compression;
 };
 
@@ -42,7 +42,7 @@ void bindCommon(CLI::App& app, CommonOptions& options);
 void bindProbe(CLI::App& app, ProbeOptions& options, const std::string& as = "IN");
 
 /// `--type half|float`.
-void bindType(CLI::App& app, PixelType& type);
+void bindType(CLI::App& app, std::optional<PixelType>& type);
 
 /// `-o`, `--format`, `--type`, `--compression`.
 void bindImageOutput(CLI::App& app, ImageOutputOptions& options);
@@ -58,7 +58,8 @@ constexpr int kMaxSize = 16384;
 CLI::Option* addTriple(CLI::App& app, const std::string& names, Imath::V3d& value,
                        const std::string& help, const std::string& type_name = "X,Y,Z");
 
-/// How to write the output. Throws Error (usage) for standard output without a format.
+/// How to write the output. Throws Error (usage) for standard output without a format, and for a
+/// pixel type where the format has its own.
 WriteOptions writeOptions(const ImageOutputOptions& output, const CommonOptions& common);
 
 } // namespace ibl

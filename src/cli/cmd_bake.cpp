@@ -19,7 +19,7 @@ struct BakeOptions {
     CommonOptions common;
     ProbeOptions probe;
     QualityOptions quality;
-    PixelType type = PixelType::float32;
+    std::optional<PixelType> type;
     std::string folder;
     int size = 256;
     std::optional<int> levels;
@@ -32,7 +32,9 @@ public:
     explicit BakeFolder(const std::string& path) : path_(path) {
         std::error_code problem;
         made_ = std::filesystem::create_directory(path_, problem);
-        if (problem) throw outputError(path, "the folder cannot be made: " + problem.message());
+        if (problem)
+            throw outputError(path, "the folder cannot be made (" + problem.message() +
+                                        "); name one in a folder that is there");
         if (!std::filesystem::is_directory(path_)) throw outputError(path, "is not a folder");
     }
     ~BakeFolder() {
@@ -77,7 +79,8 @@ void runBake(const BakeOptions& options) {
     if (levels > maxLevels(options.size)) {
         throw Error(ExitCode::usage, "--levels " + std::to_string(levels) + ": a chain of size " +
                                          std::to_string(options.size) + " has at most " +
-                                         std::to_string(maxLevels(options.size)) + " levels");
+                                         std::to_string(maxLevels(options.size)) +
+                                         " levels; ask for fewer");
     }
     const Image latlong = latlongOf(session.readProbe(options.probe), session.threads());
 
@@ -94,7 +97,7 @@ void runBake(const BakeOptions& options) {
 
     BakeFolder folder(options.folder);
     WriteOptions how;
-    how.type = options.type;
+    how.type = options.type.value_or(PixelType::float32);
     how.threads = session.threads();
     session.stage("write", [&] {
         session.write(folder.file("diffuse.exr"), results[0].map, how);

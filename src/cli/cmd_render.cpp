@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 
@@ -24,7 +25,7 @@ struct RenderOptions {
     std::string object = "sphere";
     Shader shader = Shader::mirror;
     V3d base_color{1, 1, 1};
-    double reflectivity = 0.5;
+    std::optional<double> reflectivity;
     std::string background = "probe";
     std::optional<V3d> eye; ///< otherwise the orbit
     V3d target{0, 0, 0};
@@ -61,10 +62,11 @@ Camera cameraOf(const RenderOptions& options) {
 
 Object objectOf(Session& session, const std::string& name) {
     if (std::optional<Object> builtin = builtinObject(name)) return std::move(*builtin);
-    if (!std::filesystem::path(name).has_extension()) {
+    std::error_code ignored;
+    if (!std::filesystem::path(name).has_extension() && !std::filesystem::exists(name, ignored)) {
         std::string names;
         for (const std::string_view known : builtinObjectNames())
-            names += " " + std::string(known);
+            names.append(" ").append(known);
         throw Error(ExitCode::usage, "--object " + name + ": no such object; there are" + names +
                                          ", or an OBJ file");
     }
@@ -90,6 +92,12 @@ Background backgroundOf(Session& session, const RenderOptions& options) {
     if (options.background == "probe") return ProbeBackground{};
     if (options.background == "none") return NoBackground{};
     if (const std::optional<V3f> color = colorFrom(options.background)) return *color;
+    std::error_code ignored;
+    if (options.background.find(',') != std::string::npos &&
+        !std::filesystem::exists(options.background, ignored)) {
+        throw Error(ExitCode::usage, "--background " + options.background +
+                                         ": a colour is three numbers, such as 0.2,0.2,0.2");
+    }
     session.addInput(options.background);
     ReadOptions how;
     how.threads = session.threads();
@@ -129,6 +137,15 @@ void writeFrame(Session& session, const RenderOptions& options, const WriteOptio
 void runRender(const RenderOptions& options) {
     Session session("render", options.common);
     const WriteOptions how = writeOptions(options.output, options.common);
+    if (options.reflectivity && options.shader != Shader::mirrorDiffuse) {
+        throw Error(ExitCode::usage,
+                    "--reflectivity is of the shader mirror-diffuse; leave it out");
+    }
+    for (int c = 0; c < 3; ++c) {
+        if (!(options.base_color[c] >= 0) || !std::isfinite(options.base_color[c])) {
+            throw Error(ExitCode::usage, "--base-color is not negative; give three numbers from 0");
+        }
+    }
     cameraRays(cameraOf(options), options.frame.width, options.frame.height); // refuses bad cameras
     const Panorama probe = session.readProbe(options.probe);
     Scene scene;
@@ -136,7 +153,9 @@ void runRender(const RenderOptions& options) {
     scene.object = objectOf(session, options.object);
     scene.material.shader = options.shader;
     scene.material.base_color = V3f(options.base_color);
-    scene.material.reflectivity = static_cast<float>(options.reflectivity);
+    if (options.reflectivity) {
+        scene.material.reflectivity = static_cast<float>(*options.reflectivity);
+    }
     scene.background = backgroundOf(session, options);
 
     Panorama diffuse;
@@ -178,13 +197,20 @@ void bindCamera(CLI::App& app, RenderOptions& options) {
             ->capture_default_str()
             ->group("Camera");
     };
+    const CLI::Validator above_zero(
+        [](const std::string& text) {
+            double value = 0;
+            const bool fits = CLI::detail::lexical_cast(text, value) && value > 0 && value < 1e9;
+            return fits ? std::string() : "'" + text + "' is not a number above 0 and below 1e9";
+        },
+        "ABOVE 0");
     orbit("--azimuth", options.azimuth, "Camera's longitude about the target, 0 at +Z, 90 at +X")
         ->type_name("DEG");
     orbit("--elevation", options.elevation, "Its latitude, -90 to 90")
         ->check(CLI::Range(-90.0, 90.0))
         ->type_name("DEG");
     orbit("--distance", options.distance, "Its distance from the target")
-        ->check(CLI::PositiveNumber)
+        ->check(above_zero)
         ->type_name("D");
     app.add_option("--fov", options.fov, "Vertical field of view, above 0 and below 180")
         ->type_name("DEG")
@@ -252,10 +278,10 @@ Command bindRender(CLI::App& root) {
         ->group("Object");
     addTriple(*app, "--base-color", options->base_color, "Tint or albedo (default 1,1,1)", "R,G,B")
         ->group("Object");
-    app->add_option("--reflectivity", options->reflectivity, "Of mirror-diffuse, 0 to 1")
+    app->add_option("--reflectivity", options->reflectivity,
+                    "Of mirror-diffuse, 0 to 1 (default 0.5)")
         ->check(CLI::Range(0.0, 1.0))
         ->type_name("K")
-        ->capture_default_str()
         ->group("Object");
     app->add_option("--shader-folder", options->shader_folder,
                     "Folder whose files replace the built-in shaders of the same name")

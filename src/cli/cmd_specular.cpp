@@ -30,7 +30,7 @@ std::vector<PrefilterRequest> requestsOf(const SpecularOptions& options) {
             throw Error(ExitCode::usage, "--levels " + std::to_string(*options.levels) +
                                              ": a chain of size " + std::to_string(size) +
                                              " has at most " + std::to_string(maxLevels(size)) +
-                                             " levels");
+                                             " levels; ask for fewer");
         }
         if (options.output.output == "-") {
             throw Error(

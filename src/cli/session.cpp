@@ -67,7 +67,6 @@ Session::~Session() = default;
 void Session::note(std::string_view subject, std::string_view text) {
     const std::string line =
         Error(ExitCode::done, std::string(subject) + ": " + std::string(text)).what();
-    if (!common_.quiet) std::fprintf(stderr, "ibltool: %s\n", line.c_str());
     notes_.push_back(line);
 }
 
@@ -184,6 +183,9 @@ void Session::finish() {
     if (!common_.report.empty()) outputs_.add(common_.report).write(reportText());
     if (!common_.depfile.empty()) outputs_.add(common_.depfile).write(depfileText());
     outputs_.commit();
+    if (common_.quiet) return;
+    for (const std::string& line : notes_)
+        std::fprintf(stderr, "ibltool: %s\n", line.c_str());
 }
 
 Image latlongOf(Panorama&& probe, int threads) {

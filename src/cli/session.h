@@ -29,7 +29,8 @@ public:
     const CommonOptions& common() const { return common_; }
     int threads() const { return common_.threads; }
 
-    /// A line on standard error, unless --quiet; also in the report.
+    /// A line on standard error at the end, unless --quiet, and in the report. A run that fails
+    /// says nothing but why.
     void note(std::string_view subject, std::string_view text);
     /// A line on standard error with --verbose.
     void detail(std::string_view text) const;

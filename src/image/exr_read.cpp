@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <sstream>
 
 namespace ibl {
 namespace {
@@ -53,8 +54,9 @@ const char* typeName(Imf::PixelType type) {
 }
 
 std::string windowText(const Box2i& w) {
-    return "(" + std::to_string(w.min.x) + ", " + std::to_string(w.min.y) + ") to (" +
-           std::to_string(w.max.x) + ", " + std::to_string(w.max.y) + ")";
+    std::ostringstream text;
+    text << '(' << w.min.x << ", " << w.min.y << ") to (" << w.max.x << ", " << w.max.y << ')';
+    return text.str();
 }
 
 void noteChromaticities(const Imf::Header& header, std::vector<std::string>& notes) {

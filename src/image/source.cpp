@@ -14,6 +14,8 @@ namespace ibl {
 namespace {
 
 constexpr std::size_t kFirstBytes = 64;
+/// Of a stream, which may have no end.
+constexpr std::size_t kMostOfStream = std::size_t{4} << 30;
 
 class Descriptor {
 public:
@@ -72,7 +74,10 @@ Source openSource(const std::string& path) {
         append(source, file.get(), kFirstBytes, kFirstBytes);
         source.whole = source.bytes.size() < kFirstBytes;
     } else {
-        append(source, file.get(), SIZE_MAX, 65536);
+        append(source, file.get(), kMostOfStream + 1, 65536);
+        if (source.bytes.size() > kMostOfStream) {
+            throw inputError(source.name, "has more than 4 GiB, or no end; give a file");
+        }
         source.whole = true;
     }
     if (source.bytes.empty()) throw inputError(source.name, "is empty; give an image file");

@@ -22,9 +22,10 @@ std::string formatOf(const std::string& path, const WriteOptions& options) {
     std::transform(format.begin(), format.end(), format.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     if (format.empty()) {
-        throw outputError(path == "-" ? "standard output" : path,
-                          "its name does not say its format; say which, or use a name that ends in "
-                          ".exr, .hdr or .png");
+        throw Error(ExitCode::usage,
+                    (path == "-" ? "standard output" : path) +
+                        ": its name does not say its format; say which, or use a name that ends in "
+                        ".exr, .hdr or .png");
     }
     return format;
 }
@@ -57,7 +58,8 @@ WriteLosses writeImage(OutputSet& outputs, const std::string& path, const Image&
     }
     const std::string format = formatOf(path, options);
     if (format != "exr" && !(options.compression.empty() && options.envmap.empty())) {
-        throw outputError(path, "only OpenEXR files have a compression or envmap to choose");
+        throw Error(ExitCode::usage, path + ": only OpenEXR files have a compression or envmap to "
+                                            "choose; leave it out, or write .exr");
     }
     OutputFile& file = outputs.add(path);
     if (format == "exr") return writeExr(file, image, options);
