@@ -154,16 +154,17 @@ TEST_F(Exr, EnvmapAttribute) {
 }
 
 TEST_F(Exr, RefusesOptionsThatAreNone) {
-    const auto refused = [&](const char* name, const char* compression, const char* envmap) {
+    const auto refused = [&](ExitCode code, const char* name, const char* compression,
+                             const char* envmap) {
         WriteOptions options;
         options.compression = compression;
         options.envmap = envmap;
-        errorOf(ExitCode::output, [&] { writeOne(path(name), testPixels(2, 2), options); });
+        errorOf(code, [&] { writeOne(path(name), testPixels(2, 2), options); });
     };
-    refused("a.exr", "lzma", "");
-    refused("a.exr", "", "sphere");
-    refused("a.hdr", "zip", "");
-    refused("a.png", "", "cube");
+    refused(ExitCode::output, "a.exr", "lzma", "");
+    refused(ExitCode::output, "a.exr", "", "sphere");
+    refused(ExitCode::usage, "a.hdr", "zip", "");
+    refused(ExitCode::usage, "a.png", "", "cube");
     EXPECT_TRUE(names().empty());
 }
 
