@@ -157,7 +157,7 @@ TEST(Narrow, ASunLeavesNoRingAndKeepsItsEnergy) {
         EXPECT_NEAR(energy / total, 1, 5e-3) << roughness;
         EXPECT_GT(least, 0.1)
             << roughness; // means of noise from 0 to 1: a ring would be clamped to 0
-        EXPECT_LT(footprintError(probe, request, map, 48), 3e-2) << roughness;
+        EXPECT_LT(footprintError(probe, request, map, 48), 1e-2) << roughness;
     }
 }
 
