@@ -2,6 +2,7 @@
 
 #include "convolve/plan.h"
 #include "convolve/synthesis.h"
+#include "panorama/conventions.h"
 
 #include <algorithm>
 
@@ -22,10 +23,11 @@ SpectrumError spectrumError(const std::vector<double>& k, const std::vector<doub
                             double energy, int degree) {
     const std::vector<double> beyond = energyBeyond(power, energy);
     const std::vector<double> tail = tailMaximum(k);
-    double interpolation = 0, measured = 0;
+    double interpolation = 0, interpolation_at_point = 0, measured = 0;
     for (int l = 0; l <= degree; ++l) {
-        const double e = interpolationError(l, degree);
-        interpolation += k[l] * k[l] * power[l] * e * e;
+        const double e = interpolationError(l, degree) * std::abs(k[l]) * std::sqrt(power[l]);
+        interpolation += e * e;
+        interpolation_at_point += e * std::sqrt((2 * l + 1) / (4 * kPi));
     }
     for (std::size_t l = degree + 1; l < power.size(); ++l)
         measured += k[l] * k[l] * power[l];
@@ -41,20 +43,34 @@ SpectrumError spectrumError(const std::vector<double>& k, const std::vector<doub
         modelled +=
             k[l] * k[l] * level * std::pow(static_cast<double>(l) / static_cast<double>(last), -p);
     }
+    // Beyond the table k_l is not above the envelope that falls as a horizon's, l^-2.5.
+    const double end = static_cast<double>(k.size());
+    double kernel = tail.back() * tail.back() * end * end / (6 * kPi);
+    for (std::size_t l = degree + 1; l < k.size(); ++l)
+        kernel += (2.0 * static_cast<double>(l) + 1) / (4 * kPi) * k[l] * k[l];
     SpectrumError error;
     error.bound = tail[degree] * std::sqrt(beyond[degree]) + std::sqrt(interpolation);
+    error.pointwise = std::sqrt(kernel * beyond[degree]) + interpolation_at_point;
     // The interpolation's root mean square, over places between the samples and over directions of
     // the waves, is about an eighth of its worst.
     error.estimate = std::sqrt(measured + modelled + interpolation / 64);
     return error;
 }
 
-double relative(double norm, double size, std::size_t texels) {
-    if (size <= 0) return 0;
-    const double room = texels > 0 ? 1 + 4 / std::sqrt(static_cast<double>(texels)) : 1;
-    const double ratio = norm / size * room,
-                 rounding = texels > 0 ? 4 * kFloatRounding : kFloatRounding;
-    return std::hypot(ratio, rounding);
+double roomFor(std::size_t texels) {
+    return 1 + 4 / std::sqrt(static_cast<double>(texels));
+}
+
+RelativeError relativeError(const SpectrumError& error, double size, std::size_t texels) {
+    if (size <= 0) return {0, 0};
+    const double over_sphere = error.bound * roomFor(texels);
+    const double at_points = error.pointwise * std::sqrt(4 * kPi);
+    return {std::hypot(std::min(over_sphere, at_points) / size, 4 * kFloatRounding),
+            relative(error.estimate, size)};
+}
+
+double relative(double norm, double size) {
+    return size > 0 ? std::hypot(norm / size, kFloatRounding) : 0;
 }
 
 } // namespace ibl

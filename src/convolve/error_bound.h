@@ -36,22 +36,39 @@ private:
 /// The probe's energy beyond each degree l: `energy` less the sum of `power` up to l.
 std::vector<double> energyBeyond(const std::vector<double>& power, double energy);
 
-/// Norms over the sphere of the error of cutting a lobe's coefficients k at `degree`, and of the
-/// interpolation of what is kept.
+/// Errors of cutting a lobe's coefficients k at `degree` and of interpolating what is kept.
 struct SpectrumError {
+    double bound;     ///< norm over the sphere, not exceeded
+    double pointwise; ///< at any direction, over the channels together, not exceeded
+    double estimate;  ///< norm over the sphere, likely
+};
+
+/// The bound is that of plan.h, with what the analysis has measured of the probe's spectrum. At a
+/// point, by Cauchy and Schwarz with the addition theorem for |Y_lm|^2,
+///
+///     |sum over l > B of k_l f_lm Y_lm|^2 <= sum over l > B of (2l + 1) / (4 pi) k_l^2 * S_(l >
+///     B).
+///
+/// The estimate sums k_l^2 S_l with the measured S_l as far as they go and beyond that with the
+/// power law that continues the last octave and has the energy that is left.
+SpectrumError spectrumError(const std::vector<double>& k, const std::vector<double>& power,
+                            double energy, int degree);
+
+/// By how much the mean square over that many texels may exceed the sphere's: four standard
+/// deviations of a mean square of as many values, as a factor of its root.
+double roomFor(std::size_t texels);
+
+/// Norms as relative RMSE over a map.
+struct RelativeError {
     double bound;
     double estimate;
 };
 
-/// The bound is that of plan.h, with what the analysis has measured of the probe's spectrum. The
-/// estimate sums k_l^2 S_l with the measured S_l as far as they go and beyond that with the power
-/// law that continues the last octave and has the energy that is left.
-SpectrumError spectrumError(const std::vector<double>& k, const std::vector<double>& power,
-                            double energy, int degree);
+/// Of a map with the norm `size` and that many texels, rounding included: the less of what holds
+/// over the sphere, with room for few texels, and of what holds at every point.
+RelativeError relativeError(const SpectrumError& error, double size, std::size_t texels);
 
-/// A norm as relative RMSE over a map of norm `size`, rounding included. The norm is over the
-/// sphere; a sum over few texels scatters about it, for which a bound has room (four standard
-/// deviations of a mean square of that many values). `texels` 0: no such room.
-double relative(double norm, double size, std::size_t texels);
+/// A norm over the sphere as relative RMSE of a map, rounding included.
+double relative(double norm, double size);
 
 } // namespace ibl

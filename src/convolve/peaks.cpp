@@ -17,56 +17,6 @@ double magnitude(const float* pixel, double scale) {
                              std::abs(double{pixel[2]})});
 }
 
-V3d directionOf(double theta, double psi) {
-    const double s = std::sin(theta);
-    return {s * std::cos(psi), s * std::sin(psi), std::cos(theta)};
-}
-
-/// Gauss points over a rectangle in (psi, theta), with the pole along +Z. (In cos theta the pixels
-/// at the poles would not be smooth.)
-struct RectanglePoints {
-    std::vector<V3d> directions;
-    std::vector<double> weights; ///< summing to the solid angle
-};
-
-struct PeakRectangle {
-    double top, bottom; ///< colatitudes
-    double west, east;  ///< azimuths psi
-    double size;        ///< the longer edge, radians
-    RectanglePoints coarse, fine;
-};
-
-RectanglePoints pointsIn(const PeakRectangle& r, double solid_angle, int n) {
-    const GaussRule& rule = gaussRule(n);
-    RectanglePoints points;
-    double total = 0;
-    for (int b = 0; b < n; ++b) {
-        for (int a = 0; a < n; ++a) {
-            const double x = 0.5 + 0.5 * rule.nodes[a], y = 0.5 + 0.5 * rule.nodes[b];
-            const double theta = r.top + (r.bottom - r.top) * y;
-            points.directions.push_back(directionOf(theta, r.west + (r.east - r.west) * x));
-            points.weights.push_back(rule.weights[a] * rule.weights[b] * std::sin(theta));
-            total += points.weights.back();
-        }
-    }
-    for (double& w : points.weights)
-        w *= solid_angle / total;
-    return points;
-}
-
-PeakRectangle rectangleOf(const Peak& peak, int width, int height) {
-    PeakRectangle r;
-    r.top = kPi * peak.row / height;
-    r.bottom = kPi * (peak.row + 1) / height;
-    r.west = 2 * kPi * peak.column / width;
-    r.east = 2 * kPi * (peak.column + 1) / width;
-    r.size = std::max(kPi / height, 2 * kPi / width * std::sin(kPi * (peak.row + 0.5) / height));
-    const double solid_angle = latlongPixelSolidAngle(width, height, peak.row);
-    r.coarse = pointsIn(r, solid_angle, 2);
-    r.fine = pointsIn(r, solid_angle, 4);
-    return r;
-}
-
 /// The lobe's normalised mass over the rectangle, by its edges.
 double massByEdges(const LobeMassBeyond& mass_beyond, const Axis& axis, const PeakRectangle& r) {
     const auto q = [&](double h) { return -mass_beyond(h); };
@@ -91,30 +41,6 @@ double scaleAt(const Lobe& lobe, double width, double t) {
     return std::min(smooth, to_horizon);
 }
 
-/// A lobe as the peaks need it.
-struct PeakLobe {
-    Lobe lobe;
-    LobeMassBeyond mass_beyond;
-    double width;
-    double norm; ///< 1 / integral
-};
-
-/// The lobe's normalised mass over the rectangle: by Gauss points where the lobe is smooth over it
-/// (2 x 2 are off by (size / scale)^4 / 4320 of it, 4 x 4 by (size / scale)^8 / 1.8e10), else by
-/// its edges.
-double peakMass(const PeakRectangle& r, const PeakLobe& lobe, const Axis& axis, const V3d& x) {
-    const double t = std::acos(std::clamp(x.dot(r.coarse.directions[0]), -1.0, 1.0));
-    if (t > 0.5 * kPi + 2 * r.size) return 0;
-    const double scale = scaleAt(lobe.lobe, lobe.width, t);
-    if (r.size > 0.5 * scale) return massByEdges(lobe.mass_beyond, axis, r);
-    const RectanglePoints& points = r.size > 0.1 * scale ? r.fine : r.coarse;
-    double mass = 0;
-    for (std::size_t i = 0; i < points.weights.size(); ++i) {
-        mass += points.weights[i] * lobeValue(lobe.lobe, x.dot(points.directions[i]));
-    }
-    return lobe.norm * mass;
-}
-
 void addPixel(ProbeStatistics& part, const Candidate& pixel) {
     const double w = pixel.solid_angle;
     for (int c = 0; c < 3; ++c) {
@@ -136,6 +62,18 @@ void addPixel(ProbeStatistics& part, const Candidate& pixel) {
     }
     best.push_back(pixel);
     std::ranges::push_heap(best, brighter);
+}
+
+PeakRectangle rectangleOf(const Peak& peak, int width, int height) {
+    PeakRectangle r;
+    r.top = kPi * peak.row / height;
+    r.bottom = kPi * (peak.row + 1) / height;
+    r.west = 2 * kPi * peak.column / width;
+    r.east = 2 * kPi * (peak.column + 1) / width;
+    r.size = std::max(kPi / height, 2 * kPi / width * std::sin(kPi * (peak.row + 0.5) / height));
+    r.coarse = pixelPoints(width, height, peak.column, peak.row, 2);
+    r.fine = pixelPoints(width, height, peak.column, peak.row, 4);
+    return r;
 }
 
 } // namespace
@@ -198,30 +136,74 @@ std::vector<Peak> splitPeaks(const ProbeStatistics& statistics, double threshold
     return peaks;
 }
 
-void addPeaks(const std::vector<Peak>& peaks, int width, int height, const Lobe& lobe,
-              const std::vector<double>& u, const std::vector<double>& v, double* values) {
-    if (peaks.empty()) return;
-    std::vector<PeakRectangle> rectangles;
+V3d polarDirection(double theta, double psi) {
+    const double s = std::sin(theta);
+    return {s * std::cos(psi), s * std::sin(psi), std::cos(theta)};
+}
+
+// Points are Gauss's in (psi, theta): in cos theta the pixels at the poles would not be smooth.
+PixelPoints pixelPoints(int width, int height, int column, int row, int n) {
+    const GaussRule& rule = gaussRule(n);
+    PixelPoints points;
+    double total = 0;
+    for (int b = 0; b < n; ++b) {
+        const double theta = kPi * (row + 0.5 + 0.5 * rule.nodes[b]) / height;
+        for (int a = 0; a < n; ++a) {
+            const double psi = 2 * kPi * (column + 0.5 + 0.5 * rule.nodes[a]) / width;
+            points.directions.push_back(polarDirection(theta, psi));
+            points.weights.push_back(rule.weights[a] * rule.weights[b] * std::sin(theta));
+            total += points.weights.back();
+        }
+    }
+    for (double& w : points.weights)
+        w *= latlongPixelSolidAngle(width, height, row) / total;
+    return points;
+}
+
+PeakSum makePeakSum(const std::vector<Peak>& peaks, int width, int height, const Lobe& lobe) {
+    PeakSum sum{peaks, {}, lobe, LobeMassBeyond(lobe), lobeWidth(lobe), 1 / lobeIntegral(lobe)};
     for (const Peak& peak : peaks)
-        rectangles.push_back(rectangleOf(peak, width, height));
-    const PeakLobe peak_lobe{lobe, LobeMassBeyond(lobe), lobeWidth(lobe), 1 / lobeIntegral(lobe)};
+        sum.rectangles.push_back(rectangleOf(peak, width, height));
+    return sum;
+}
+
+// By Gauss points where the lobe is smooth over the pixel (2 x 2 are off by (size / scale)^4 / 4320
+// of it, 4 x 4 by (size / scale)^8 / 1.8e10), else by the pixel's edges.
+double peakMass(const PeakSum& sum, std::size_t p, const Axis& axis, const V3d& x) {
+    const PeakRectangle& r = sum.rectangles[p];
+    const double t = std::acos(std::clamp(x.dot(r.coarse.directions[0]), -1.0, 1.0));
+    if (t > 0.5 * kPi + 2 * r.size) return 0;
+    const double scale = scaleAt(sum.lobe, sum.width, t);
+    if (r.size > 0.5 * scale) return massByEdges(sum.mass_beyond, axis, r);
+    const PixelPoints& points = r.size > 0.1 * scale ? r.fine : r.coarse;
+    double mass = 0;
+    for (std::size_t i = 0; i < points.weights.size(); ++i) {
+        mass += points.weights[i] * lobeValue(sum.lobe, x.dot(points.directions[i]));
+    }
+    return sum.norm * mass;
+}
+
+void addPeaks(const PeakSum& sum, const std::vector<double>& u, const std::vector<double>& v,
+              double* values) {
     for (std::size_t i = 0; i < u.size(); ++i) {
         const Axis axis = makeAxis(u[i], v[i]);
-        const V3d x = directionOf(axis.theta, axis.psi);
-        for (std::size_t p = 0; p < peaks.size(); ++p) {
-            const double mass = peakMass(rectangles[p], peak_lobe, axis, x);
+        const V3d x = polarDirection(axis.theta, axis.psi);
+        for (std::size_t p = 0; p < sum.peaks.size(); ++p) {
+            const double mass = peakMass(sum, p, axis, x);
             for (int c = 0; c < 3; ++c)
-                values[3 * i + c] += peaks[p].excess[c] * mass;
+                values[3 * i + c] += sum.peaks[p].excess[c] * mass;
         }
     }
 }
 
-Image clampedProbe(const Image& probe, double scale, double threshold) {
-    Image clamped = probe;
-    const float most = static_cast<float>(threshold / scale);
-    for (float& value : clamped.pixels)
-        value = std::clamp(value, -most, most);
-    return clamped;
+Image peakImage(const std::vector<Peak>& peaks, int width, int height) {
+    Image image(width, height);
+    std::ranges::fill(image.pixels, 0.0f);
+    for (const Peak& peak : peaks) {
+        for (int c = 0; c < 3; ++c)
+            image.at(peak.column, peak.row)[c] = static_cast<float>(peak.excess[c]);
+    }
+    return image;
 }
 
 } // namespace ibl

@@ -6,8 +6,10 @@
 // at the threshold (non-negative where the probe is).
 #pragma once
 
+#include "convolve/edges.h"
 #include "convolve/lobe.h"
 #include "image/image.h"
+#include "panorama/conventions.h"
 
 #include <vector>
 
@@ -50,13 +52,49 @@ struct Peak {
 
 std::vector<Peak> splitPeaks(const ProbeStatistics& statistics, double threshold);
 
-/// Adds the peaks' part of the lobe-weighted mean at lat-long points: values[3 i + channel] += sum
-/// of excess times the lobe's normalised mass over the peak's rectangle. `width` x `height` is the
-/// probe's size.
-void addPeaks(const std::vector<Peak>& peaks, int width, int height, const Lobe& lobe,
-              const std::vector<double>& u, const std::vector<double>& v, double* values);
+/// Gauss points over a pixel, in its own frame: the pole along +Z.
+struct PixelPoints {
+    std::vector<V3d> directions;
+    std::vector<double> weights; ///< summing to the pixel's solid angle
+};
 
-/// The probe with every value within +-threshold (in the statistics' scale): what the peaks leave.
-Image clampedProbe(const Image& probe, double scale, double threshold);
+/// n x n points over pixel (column, row) of a probe of that extent.
+PixelPoints pixelPoints(int width, int height, int column, int row, int n);
+
+/// The direction of colatitude theta and azimuth psi in that frame.
+V3d polarDirection(double theta, double psi);
+
+/// Where a peak lies, and points in it.
+struct PeakRectangle {
+    double top, bottom; ///< colatitudes
+    double west, east;  ///< azimuths psi
+    double size;        ///< the longer edge, radians
+    PixelPoints coarse, fine;
+};
+
+/// Peaks and the lobe that they are convolved with.
+struct PeakSum {
+    std::vector<Peak> peaks;
+    std::vector<PeakRectangle> rectangles;
+    Lobe lobe;
+    LobeMassBeyond mass_beyond;
+    double width; ///< lobeWidth
+    double norm;  ///< 1 / integral of the lobe
+};
+
+/// `width` x `height` is the probe's size.
+PeakSum makePeakSum(const std::vector<Peak>& peaks, int width, int height, const Lobe& lobe);
+
+/// The lobe's normalised mass over peak p's pixel, seen along the axis, which is also given as its
+/// polarDirection x.
+double peakMass(const PeakSum& sum, std::size_t p, const Axis& axis, const V3d& x);
+
+/// Adds the peaks' part of the lobe-weighted mean at lat-long points: values[3 i + channel] += sum
+/// of excess times the lobe's normalised mass over the peak's pixel.
+void addPeaks(const PeakSum& sum, const std::vector<double>& u, const std::vector<double>& v,
+              double* values);
+
+/// A black probe of that extent with the peaks alone in it.
+Image peakImage(const std::vector<Peak>& peaks, int width, int height);
 
 } // namespace ibl

@@ -1,11 +1,14 @@
 #include "convolve/plan.h"
 
+#include "convolve/error_bound.h"
+#include "convolve/narrow.h"
 #include "convolve/texels.h"
 #include "core/parallel.h"
 #include "panorama/conventions.h"
 #include "panorama/layouts.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -16,8 +19,8 @@ namespace {
 /// needs more has a horizon, against which only peaks help; a narrow one is worth 3 s of one core.
 constexpr int kMostDegree = 768;
 constexpr int kMostDegreeOfNarrow = 1536;
-/// Where a lobe is narrower than even that can show: 0.9 s of one core.
-constexpr int kNarrowDegree = 1024;
+/// Degrees that Method::narrow chooses from.
+constexpr std::array kNarrowDegrees{512, 768, 1024, 1536, 2048};
 /// Coefficients known beyond it, from which the tail's envelope is read.
 constexpr int kTailBands = 64;
 
@@ -31,12 +34,6 @@ struct Costs {
 
 /// Outweighs any cost: a lobe whose error cannot be kept within kMostDegree.
 constexpr double kUnmet = 1e15;
-
-double texelsOf(const PrefilterRequest& request) {
-    const double n = request.size;
-    return isCubeFamily(request.layout) || request.layout == Layout::exrCube ? 6 * n * n
-                                                                             : 2 * n * n;
-}
 
 /// Whether what harmonics cannot hold of a lobe is its core, not its horizon.
 bool isNarrow(const Lobe& lobe) {
@@ -62,7 +59,7 @@ double costOf(const std::vector<int>& degrees, std::span<const PrefilterRequest>
         const Footprint footprint =
             footprintOf(requests[i].lobe, texelAngle(requests[i]), kAnyDegree);
         const bool smooth = 2 * pixel < lobeWidth(requests[i].lobe);
-        cost += (smooth ? Costs::kPeak : Costs::kPeakEdges) * peaks * texelsOf(requests[i]) *
+        cost += (smooth ? Costs::kPeak : Costs::kPeakEdges) * peaks * texelCount(requests[i]) *
                 footprint.samples * footprint.samples;
         most = std::max(most, degrees[i]);
     }
@@ -81,6 +78,15 @@ double narrowThreshold(const ProbeStatistics& probe) {
         if (clampedEnergy(probe, threshold) <= 9 * mean) break;
     }
     return threshold;
+}
+
+/// Least of kNarrowDegrees at which a probe of that energy is likely to keep `allowed`.
+int narrowDegree(const std::vector<double>& k, double energy, double allowed, double footprint) {
+    for (const int degree : kNarrowDegrees) {
+        const Spectrum spectrum = continuedSpectrum({}, energy, degree);
+        if (makeNarrowLobe(k, degree, spectrum, footprint).error <= allowed) return degree;
+    }
+    return kNarrowDegrees.back();
 }
 
 } // namespace
@@ -121,6 +127,12 @@ double referenceNorm(const ProbeStatistics& probe, const std::vector<double>& k)
     return std::min(std::sqrt(std::max(mean, spots)), 4 * std::sqrt(mean));
 }
 
+double allowedNorm(const ProbeStatistics& probe, const PrefilterRequest& request,
+                   const std::vector<double>& k, double max_error) {
+    const auto texels = static_cast<std::size_t>(texelCount(request));
+    return 0.5 * max_error * referenceNorm(probe, k) / roomFor(texels);
+}
+
 Plan makePlan(const ProbeStatistics& probe, std::span<const PrefilterRequest> requests,
               double max_error, int probe_width, int threads) {
     Plan plan;
@@ -134,7 +146,7 @@ Plan makePlan(const ProbeStatistics& probe, std::span<const PrefilterRequest> re
             return;
         }
         lobe.k = zonalCoefficients(requests[i].lobe, mostDegree(requests[i].lobe) + kTailBands);
-        allowed[i] = 0.5 * max_error * referenceNorm(probe, lobe.k);
+        allowed[i] = allowedNorm(probe, requests[i], lobe.k, max_error);
     });
 
     double best = std::numeric_limits<double>::infinity();
@@ -163,7 +175,11 @@ Plan makePlan(const ProbeStatistics& probe, std::span<const PrefilterRequest> re
         lobe.degree = std::min(chosen[i], mostDegree(requests[i].lobe));
         if (chosen[i] < 0) {
             lobe.method = Method::narrow;
-            lobe.degree = kNarrowDegree;
+            lobe.k = zonalCoefficients(requests[i].lobe, 2 * kNarrowDegrees.back() + 1);
+            lobe.degree = narrowDegree(
+                lobe.k, clampedEnergy(probe, plan.narrow_threshold), allowed[i],
+                footprintOf(requests[i].lobe, texelAngle(requests[i]), kAnyDegree).scale *
+                    texelAngle(requests[i]));
         } else {
             plan.degree = std::max(plan.degree, lobe.degree);
         }

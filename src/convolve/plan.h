@@ -54,4 +54,9 @@ std::vector<double> tailMaximum(const std::vector<double>& k);
 /// for suns, whose result is a spot, a few times the mean, so that the dark around it is right too.
 double referenceNorm(const ProbeStatistics& probe, const std::vector<double>& k);
 
+/// The norm over the sphere that an output's truncation may have for its bound to keep the asked
+/// relative RMSE: half of it, and less where texels are few.
+double allowedNorm(const ProbeStatistics& probe, const PrefilterRequest& request,
+                   const std::vector<double>& k, double max_error);
+
 } // namespace ibl

@@ -15,11 +15,16 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 
 namespace ibl {
 namespace {
+
+constexpr double kNoThreshold = std::numeric_limits<double>::infinity();
+/// Degrees from which a spectrum can be continued.
+constexpr int kSpectrumDegree = 512;
 
 class Stopwatch {
 public:
@@ -75,15 +80,15 @@ double scaleOf(const Image& probe, int threads) {
 /// What Method::narrow adds to the harmonics.
 struct NarrowParts {
     double area_share; ///< of the next
-    Image area;        ///< the area-filtered probe without its peaks
-    Image whole_area;  ///< and with them; as `area` when there are none
-    const std::vector<Peak>& peaks;
+    Image area;        ///< the area-filtered probe
+    Image peak_area;   ///< what its peaks have in that, scaled
+    NarrowPeaks peaks;
 };
 
 /// What an output's rows are made from; absent parts are null.
 struct Ingredients {
     const SmoothField* field = nullptr;
-    const std::vector<Peak>* peaks = nullptr;
+    const PeakSum* peaks = nullptr;
     const DirectLobe* direct = nullptr;
     const NarrowParts* narrow = nullptr;
 };
@@ -97,18 +102,18 @@ struct Probe {
 void addNarrowRow(const Probe& probe, const PrefilterRequest& request, const Footprint& footprint,
                   const NarrowParts& parts, const RowPoints& points, int y,
                   std::vector<double>& texels) {
-    std::vector<double> of_peaks(texels.size());
+    const bool any_peaks = !parts.peaks.sum.peaks.empty();
+    std::vector<double> of_peaks(any_peaks ? texels.size() : 0);
     for (std::size_t t = 0; t < points.column.size(); ++t) {
-        const float *area = parts.area.at(points.column[t], y),
-                    *whole = parts.whole_area.at(points.column[t], y);
+        const float* area = parts.area.at(points.column[t], y);
         for (int c = 0; c < 3; ++c) {
             texels[3 * t + c] = parts.area_share * probe.scale * area[c];
-            of_peaks[3 * t + c] = probe.scale * (double{whole[c]} - double{area[c]});
+            if (any_peaks) of_peaks[3 * t + c] = parts.peak_area.at(points.column[t], y)[c];
         }
     }
-    if (parts.peaks.empty()) return;
-    addNarrowPeaks(parts.peaks, probe.image, request.lobe, texelAngle(request), footprint, points,
-                   of_peaks, texels);
+    if (!any_peaks) return;
+    addNarrowPeaks(parts.peaks, probe.image.width, probe.image.height, texelAngle(request),
+                   footprint, points, of_peaks, texels);
 }
 
 /// Fills row y of the map.
@@ -124,8 +129,7 @@ void fillRow(const Probe& probe, const PrefilterRequest& request, const Footprin
         std::ranges::copy(smooth, values.begin());
     }
     if (parts.peaks) {
-        addPeaks(*parts.peaks, probe.image.width, probe.image.height, request.lobe, points.u,
-                 points.v, values.data());
+        addPeaks(*parts.peaks, points.u, points.v, values.data());
     }
     for (std::size_t i = 0; parts.direct && i < count; ++i) {
         addDirect(*parts.direct, probe.image, probe.scale, makeAxis(points.u[i], points.v[i]),
@@ -172,10 +176,11 @@ struct Engine {
     Plan plan;
     std::vector<Peak> peaks;
     std::optional<Harmonics> clamped; ///< of the probe without its peaks, for Method::harmonics
-    std::vector<Peak> narrow_peaks;
-    std::optional<Harmonics> narrow; ///< of the probe without these, for Method::narrow
-    std::vector<double> power;       ///< of `clamped`
+    std::vector<double> power;        ///< of `clamped`
     double clamped_energy = 0;
+    std::optional<Harmonics> whole; ///< of the probe with its peaks, for Method::narrow
+    std::vector<Peak> narrow_peaks;
+    std::vector<double> narrow_power; ///< of the probe without these, to a lower degree
     double seconds = 0;
 };
 
@@ -196,8 +201,17 @@ Engine analyseProbe(const Image& image, std::span<const PrefilterRequest> reques
     const Stopwatch watch;
     const int threads = options.threads;
     const double scale = scaleOf(image, threads);
-    Engine engine{
-        {image, scale, false}, measureProbe(image, scale, threads), {}, {}, {}, {}, {}, {}, 0, 0};
+    Engine engine{{image, scale, false},
+                  measureProbe(image, scale, threads),
+                  {},
+                  {},
+                  {},
+                  {},
+                  0,
+                  {},
+                  {},
+                  {},
+                  0};
     engine.probe.negative = engine.statistics.negative;
     if (options.reference) return engine;
     engine.plan = makePlan(engine.statistics, requests, options.max_error, image.width, threads);
@@ -210,9 +224,15 @@ Engine analyseProbe(const Image& image, std::span<const PrefilterRequest> reques
         engine.power = powerSpectrum(*engine.clamped);
     }
     if (const int degree = narrowDegreeOf(plan); degree >= 0) {
+        const auto analysed = [&](double threshold, int to) {
+            return analyse(analyseRows(image, scale, threshold, to, threads), to, threads);
+        };
+        engine.whole = analysed(kNoThreshold, degree);
         engine.narrow_peaks = splitPeaks(engine.statistics, plan.narrow_threshold);
-        engine.narrow = analyse(analyseRows(image, scale, plan.narrow_threshold, degree, threads),
-                                degree, threads);
+        engine.narrow_power =
+            powerSpectrum(engine.narrow_peaks.empty()
+                              ? *engine.whole
+                              : analysed(plan.narrow_threshold, std::min(degree, kSpectrumDegree)));
     }
     engine.seconds = watch.seconds();
     return engine;
@@ -254,13 +274,15 @@ PrefilterResult byHarmonics(const Engine& engine, const PrefilterRequest& reques
     const Stopwatch watch;
     PrefilterResult result = emptyResult(request);
     const std::vector<double> beyond = energyBeyond(engine.power, engine.clamped_energy);
-    const double allowed = 0.5 * max_error * referenceNorm(engine.statistics, lobe.k);
+    const double allowed = allowedNorm(engine.statistics, request, lobe.k, max_error);
     const int degree = std::min(lobe.degree, leastDegree(lobe.k, lobe.degree, allowed, beyond));
     const SmoothField field = synthesise(*engine.clamped, lobe.k, degree, threads);
     result.seconds_synthesis = watch.seconds();
     Ingredients parts;
     parts.field = &field;
-    parts.peaks = &engine.peaks;
+    const PeakSum peaks = makePeakSum(engine.peaks, engine.probe.image.width,
+                                      engine.probe.image.height, request.lobe);
+    parts.peaks = &peaks;
     MapNorm norm;
     // Peaks have no highest degree.
     const int highest = engine.peaks.empty() ? degree : kAnyDegree;
@@ -269,9 +291,10 @@ PrefilterResult byHarmonics(const Engine& engine, const PrefilterRequest& reques
     result.band_limit = degree;
     result.peaks_split = static_cast<int>(engine.peaks.size());
     const SpectrumError error = spectrumError(lobe.k, engine.power, engine.clamped_energy, degree);
-    const double size = norm.root() * engine.probe.scale;
-    result.error_bound = relative(error.bound, size, norm.texels());
-    result.error_estimate = relative(error.estimate, size, 0);
+    const RelativeError relative_error =
+        relativeError(error, norm.root() * engine.probe.scale, norm.texels());
+    result.error_bound = relative_error.bound;
+    result.error_estimate = relative_error.estimate;
     result.seconds_spatial = watch.seconds() - result.seconds_synthesis;
     return result;
 }
@@ -280,31 +303,33 @@ PrefilterResult byArea(const Engine& engine, const PrefilterRequest& request, co
                        int threads) {
     const Stopwatch watch;
     PrefilterResult result = emptyResult(request);
-    const NarrowLobe narrow = makeNarrowLobe(request.lobe, lobe.degree);
-    const SmoothField field = synthesise(*engine.narrow, narrow.k, lobe.degree, threads);
+    const Image& probe = engine.probe.image;
+    const double texel = texelAngle(request);
+    const Footprint footprint = footprintOf(request.lobe, texel, lobe.degree);
+    const double energy = clampedEnergy(engine.statistics, engine.plan.narrow_threshold);
+    const NarrowLobe narrow = makeNarrowLobe(
+        lobe.k, lobe.degree, continuedSpectrum(engine.narrow_power, energy, lobe.degree),
+        footprint.scale * texel);
+    const SmoothField field = synthesise(*engine.whole, narrow.k, lobe.degree, threads);
     result.seconds_synthesis = watch.seconds();
-    const double scale = engine.probe.scale, threshold = engine.plan.narrow_threshold;
-    const auto areaOf = [&](Image probe) {
-        return resample({Layout::latlong, std::move(probe)}, request.layout, request.size, threads)
-            .image;
+    const auto areaOf = [&](const Image& image) {
+        return resample({Layout::latlong, image}, request.layout, request.size, threads).image;
     };
-    NarrowParts of_narrow{narrow.area, {}, areaOf(engine.probe.image), engine.narrow_peaks};
-    of_narrow.area = engine.narrow_peaks.empty()
-                         ? of_narrow.whole_area
-                         : areaOf(clampedProbe(engine.probe.image, scale, threshold));
+    NarrowParts of_narrow{
+        narrow.area,
+        areaOf(probe),
+        {},
+        makeNarrowPeaks(engine.narrow_peaks, probe.width, probe.height, request.lobe, narrow)};
+    if (!engine.narrow_peaks.empty())
+        of_narrow.peak_area = areaOf(peakImage(engine.narrow_peaks, probe.width, probe.height));
     Ingredients parts;
     parts.field = &field;
     parts.narrow = &of_narrow;
-    const double texel = texelAngle(request);
     MapNorm norm;
-    fillMap(engine.probe, request, footprintOf(request.lobe, texel, lobe.degree), parts, threads,
-            result.map.image, norm);
+    fillMap(engine.probe, request, footprint, parts, threads, result.map.image, norm);
     result.band_limit = lobe.degree;
-    const std::vector<double> power = powerSpectrum(*engine.narrow);
-    const double error =
-        narrowError(narrow, power, clampedEnergy(engine.statistics, threshold), texel);
     result.peaks_split = static_cast<int>(engine.narrow_peaks.size());
-    result.error_estimate = relative(error, norm.root() * scale, 0);
+    result.error_estimate = relative(narrow.error, norm.root() * engine.probe.scale);
     result.error_bound = kBoundOverEstimate * result.error_estimate;
     result.seconds_spatial = watch.seconds() - result.seconds_synthesis;
     return result;

@@ -77,6 +77,12 @@ Footprint footprintOf(const Lobe& lobe, double texel, int degree) {
     return footprint;
 }
 
+double texelCount(const PrefilterRequest& request) {
+    const double n = request.size;
+    const bool cube = isCubeFamily(request.layout) || request.layout == Layout::exrCube;
+    return cube ? 6 * n * n : 2 * n * n;
+}
+
 RowPoints rowPoints(Layout layout, int width, int height, int y, const Footprint& footprint) {
     RowPoints points;
     const std::size_t points_across = footprintRule(footprint.samples).nodes.size();

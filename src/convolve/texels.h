@@ -27,6 +27,9 @@ double texelAngle(const PrefilterRequest& request);
 /// field's highest degree falls between them.
 Footprint footprintOf(const Lobe& lobe, double texel, int degree);
 
+/// The number of texels of the map that have a direction.
+double texelCount(const PrefilterRequest& request);
+
 /// The texels of one row of a map that have a direction, and their points.
 struct RowPoints {
     std::vector<int> column;         ///< of each texel
