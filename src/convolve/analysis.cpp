@@ -16,57 +16,111 @@ constexpr double kPi = std::numbers::pi;
 /// Two real rows share a complex transform, so a vector holds twice as many rows as lanes.
 constexpr int kRowsAtOnce = 2 * kLanes;
 
-/// Pixels of rows first .. first + kRowsAtOnce - 1, one channel: the first eight rows as real
-/// parts, the others as imaginary parts.
-void loadRows(const Image& probe, int first, int channel, double scale, double threshold,
-              ComplexLanes* data) {
-    for (int lane = 0; lane < kRowsAtOnce; ++lane) {
-        const int j = first + lane;
-        Lanes ComplexLanes::*const part = lane < kLanes ? &ComplexLanes::re : &ComplexLanes::im;
-        const float* in = j < probe.height ? probe.row(j) + channel : nullptr;
-        for (int i = 0; i < probe.width; ++i) {
-            const double value =
-                in ? scale * in[static_cast<std::ptrdiff_t>(i) * probe.channels] : 0.0;
-            (data[i].*part)[lane % kLanes] = std::clamp(value, -threshold, threshold);
-        }
-    }
-}
+typedef float Floats __attribute__((vector_size(kLanes * sizeof(float))));
 
 struct RowTask {
     const Image& probe;
-    const FftPlan& plan;
+    const PrunedFft& plan;
     const std::vector<std::complex<double>>& factors; ///< per m: area and half-pixel phase
     double scale;
     double threshold;
 };
 
-void storeLanes(const Lanes& value, int count, double* out) {
-    for (int lane = 0; lane < count; ++lane)
-        out[lane] = value[lane];
+/// One channel of the pixels i .. i + kLanes - 1 of an RGB row.
+template <int Channel>
+IBL_INLINE Lanes loadPixels(const float* row) {
+    Floats a, b, c;
+    __builtin_memcpy(&a, row, sizeof a);
+    __builtin_memcpy(&b, row + 4, sizeof b);
+    __builtin_memcpy(&c, row + 8, sizeof c);
+    Floats channel;
+    if constexpr (Channel == 0) {
+        channel = __builtin_shufflevector(__builtin_shufflevector(a, b, 0, 3, 6, 6), c, 0, 1, 2, 5);
+    } else if constexpr (Channel == 1) {
+        channel = __builtin_shufflevector(__builtin_shufflevector(a, b, 1, 4, 7, 7), c, 0, 1, 2, 6);
+    } else {
+        channel = __builtin_shufflevector(__builtin_shufflevector(a, b, 2, 5, 5, 5), c, 0, 1, 4, 7);
+    }
+    return __builtin_convertvector(channel, Lanes);
 }
 
-void analyseRowBlock(const RowTask& task, int first, RowSpectrum& result) {
-    const int w = task.probe.width;
-    LaneVector<ComplexLanes> data(w), work(fftWorkspace(task.plan));
-    const int upper = std::clamp(result.rows - first, 0, kLanes);
-    const int lower = std::clamp(result.rows - first - kLanes, 0, kLanes);
-    for (int channel = 0; channel < 3; ++channel) {
-        loadRows(task.probe, first, channel, task.scale, task.threshold, data.data());
-        fft(task.plan, data.data(), work.data());
-        for (int m = 0; m <= result.degree; ++m) {
-            // X = A + iB with A, B the transforms of real rows: A = (X_m + conj X_-m) / 2, ...
-            const ComplexLanes &p = data[m % w], &q = data[(w - m % w) % w];
-            const Lanes are = 0.5 * (p.re + q.re), aim = 0.5 * (p.im - q.im);
-            const Lanes bre = 0.5 * (p.im + q.im), bim = 0.5 * (q.re - p.re);
-            const std::complex<double> f = task.factors[m];
-            double* out = result.values.data() +
-                          (static_cast<std::ptrdiff_t>(m) * kParts + 2 * channel) * result.rows +
-                          first;
-            storeLanes(are * f.real() - aim * f.imag(), upper, out);
-            storeLanes(are * f.imag() + aim * f.real(), upper, out + result.rows);
-            storeLanes(bre * f.real() - bim * f.imag(), lower, out + kLanes);
-            storeLanes(bre * f.imag() + bim * f.real(), lower, out + result.rows + kLanes);
+/// Rows `rows` of one channel, scaled and clamped: the first kLanes as real parts, the others as
+/// imaginary parts.
+template <int Channel>
+IBL_INLINE void loadRows(const RowTask& task, const float* const* rows, ComplexLanes* data) {
+    const Lanes most = Lanes{} + task.threshold;
+    const auto clamped = [&](const Lanes& raw) {
+        const Lanes value = raw * task.scale, above = value > most ? most : value;
+        return above < -most ? -most : above;
+    };
+    const int width = task.probe.width;
+    int i = 0;
+    for (; i + kLanes <= width; i += kLanes) {
+        Lanes re[kLanes], im[kLanes];
+        for (int lane = 0; lane < kLanes; ++lane) {
+            re[lane] = clamped(loadPixels<Channel>(rows[lane] + 3 * i));
+            im[lane] = clamped(loadPixels<Channel>(rows[lane + kLanes] + 3 * i));
         }
+        transpose(re);
+        transpose(im);
+        for (int k = 0; k < kLanes; ++k)
+            data[task.plan.slot(i + k)] = {re[k], im[k]};
+    }
+    for (; i < width; ++i) {
+        Lanes re, im;
+        for (int lane = 0; lane < kLanes; ++lane) {
+            re[lane] = rows[lane][3 * i + Channel];
+            im[lane] = rows[lane + kLanes][3 * i + Channel];
+        }
+        data[task.plan.slot(i)] = {clamped(re), clamped(im)};
+    }
+}
+
+IBL_MULTIVERSION
+void loadChannel(const RowTask& task, const float* const* rows, int channel, ComplexLanes* data) {
+    if (channel == 0)
+        loadRows<0>(task, rows, data);
+    else if (channel == 1)
+        loadRows<1>(task, rows, data);
+    else
+        loadRows<2>(task, rows, data);
+}
+
+/// From X = A + iB, A and B the transforms of real rows: A = (X_m + conj X_-m) / 2, ... `spectrum`
+/// holds X_m from m = -degree on, `out` and `out_lower` a block of rows each.
+IBL_MULTIVERSION
+void separateRows(const RowTask& task, const ComplexLanes* spectrum, int degree, int channel,
+                  double* out, double* out_lower) {
+    for (int m = 0; m <= degree; ++m) {
+        const ComplexLanes &p = spectrum[degree + m], &q = spectrum[degree - m];
+        const Lanes are = 0.5 * (p.re + q.re), aim = 0.5 * (p.im - q.im);
+        const Lanes bre = 0.5 * (p.im + q.im), bim = 0.5 * (q.re - p.re);
+        const std::complex<double> f = task.factors[m];
+        const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(m) * kParts + 2 * channel;
+        Lanes* upper = reinterpret_cast<Lanes*>(out) + at;
+        Lanes* lower = reinterpret_cast<Lanes*>(out_lower) + at;
+        upper[0] = are * f.real() - aim * f.imag();
+        upper[1] = are * f.imag() + aim * f.real();
+        lower[0] = bre * f.real() - bim * f.imag();
+        lower[1] = bre * f.imag() + bim * f.real();
+    }
+}
+
+void analyseRowBlock(const RowTask& task, int block, const std::vector<float>& zeros,
+                     RowSpectrum& result) {
+    const float* rows[kRowsAtOnce];
+    for (int i = 0; i < kRowsAtOnce; ++i) {
+        const int j = block * kRowsAtOnce + i;
+        rows[i] = j < task.probe.height ? task.probe.row(j) : zeros.data();
+    }
+    LaneVector<ComplexLanes> data(task.probe.width), work(fftWorkspace(task.plan.part)),
+        spectrum(2 * result.degree + 1);
+    const std::ptrdiff_t lanes = columnsTogether(result.degree + 1).block;
+    double* out = result.values.data() + 2 * block * lanes;
+    for (int channel = 0; channel < 3; ++channel) {
+        loadChannel(task, rows, channel, data.data());
+        prunedFft(task.plan, data.data(), work.data(), spectrum.data());
+        separateRows(task, spectrum.data(), result.degree, channel, out, out + lanes);
     }
 }
 
@@ -74,38 +128,37 @@ void analyseRowBlock(const RowTask& task, int first, RowSpectrum& result) {
 
 RowSpectrum analyseRows(const Image& probe, double scale, double threshold, int degree,
                         int threads) {
+    const std::size_t blocks = (probe.height + kRowsAtOnce - 1) / kRowsAtOnce;
     RowSpectrum result{probe.height, degree, {}};
-    result.values.resize(static_cast<std::size_t>(degree + 1) * kParts * probe.height);
-    const FftPlan plan = makeFftPlan(probe.width);
+    result.values.resize(2 * blocks * columnsTogether(degree + 1).block);
+    const PrunedFft plan = makePrunedFft(probe.width, degree);
     std::vector<std::complex<double>> factors(static_cast<std::size_t>(degree + 1));
     for (int m = 0; m <= degree; ++m) {
         const double x = kPi * m / probe.width;
         factors[m] = std::polar(2 * kPi / probe.width * (m == 0 ? 1 : std::sin(x) / x), -x);
     }
     const RowTask task{probe, plan, factors, scale, threshold};
-    const std::size_t blocks = (probe.height + kRowsAtOnce - 1) / kRowsAtOnce;
+    const std::vector<float> zeros(probe.rowFloats());
     parallelFor(blocks, threads, [&](std::size_t block) {
-        analyseRowBlock(task, static_cast<int>(block) * kRowsAtOnce, result);
+        analyseRowBlock(task, static_cast<int>(block), zeros, result);
     });
     return result;
 }
 
 Harmonics analyse(const RowSpectrum& rows, int degree, int threads) {
     Harmonics harmonics(degree);
-    const RingGeometry rings = makeRings(ringsFor(degree));
+    const RingPairs rings = makeRings(ringsFor(degree));
+    const int count = 2 * rings.pairs;
     const ThetaResample plan =
-        makeThetaResample(rows.rows, rings.rings, degree + 1, RingSource::pixel_rows);
-    constexpr int kGroup = 2 * kLanes;
-    const std::size_t groups = degree / kGroup + 1;
-    parallelFor(groups, threads, [&](std::size_t group) {
-        const int first = static_cast<int>(group) * kGroup;
-        const int end = std::min(first + kGroup, degree + 1);
-        const std::ptrdiff_t column = static_cast<std::ptrdiff_t>(kParts) * rings.rings;
-        std::vector<double> resampled(static_cast<std::size_t>(kGroup * column));
-        thetaResample(plan, rows.column(first), end - first, resampled.data());
-        for (int m = first; m < end; ++m) {
-            legendreAnalysis(rings, resampled.data() + (m - first) * column, m, harmonics);
-        }
+        makeThetaResample(rows.rows, count, degree + 1, RingSource::pixel_rows);
+    parallelFor(degree / kColumnsAtOnce + 1, threads, [&](std::size_t group) {
+        const int first = static_cast<int>(group) * kColumnsAtOnce;
+        const int orders = std::min(kColumnsAtOnce, degree + 1 - first);
+        LaneVector<double> resampled(static_cast<std::size_t>(kColumnsAtOnce) * kParts * count);
+        const double* columns = rows.values.data() + first * kParts * kLanes;
+        thetaResample(plan, columns, columnsTogether(rows.degree + 1), orders, resampled.data(),
+                      columnsApart(count));
+        legendreAnalysis(rings, resampled.data(), first, orders, harmonics);
     });
     return harmonics;
 }

@@ -17,11 +17,7 @@ namespace ibl {
 struct RowSpectrum {
     int rows = 0;
     int degree = 0;
-    std::vector<double> values; ///< [m][part][row], m = 0 .. degree
-
-    const double* column(int m) const {
-        return values.data() + static_cast<std::ptrdiff_t>(m) * kParts * rows;
-    }
+    LaneVector<double> values; ///< [block of kLanes rows][m][part][row in block], m = 0 .. degree
 };
 
 /// `probe` (RGB) times `scale`, clamped to +-threshold.

@@ -97,8 +97,7 @@ IBL_INLINE void passOdd(const Pass& p, int radix) {
     }
 }
 
-IBL_MULTIVERSION
-void stockham(const FftPlan& plan, ComplexLanes* data, ComplexLanes* workspace) {
+IBL_INLINE void stockhamPasses(const FftPlan& plan, ComplexLanes* data, ComplexLanes* workspace) {
     ComplexLanes *x = data, *y = workspace;
     int n = plan.length, s = 1;
     for (const int radix : plan.factors) {
@@ -120,6 +119,11 @@ void stockham(const FftPlan& plan, ComplexLanes* data, ComplexLanes* workspace) 
     if (x != data) std::copy(x, x + plan.length, data);
 }
 
+IBL_MULTIVERSION
+void stockham(const FftPlan& plan, ComplexLanes* data, ComplexLanes* workspace) {
+    stockhamPasses(plan, data, workspace);
+}
+
 /// Bluestein: j k = (j^2 + k^2 - (j - k)^2) / 2 makes the transform a convolution with a chirp.
 IBL_MULTIVERSION
 void bluestein(const FftPlan& plan, ComplexLanes* data, ComplexLanes* workspace) {
@@ -128,12 +132,12 @@ void bluestein(const FftPlan& plan, ComplexLanes* data, ComplexLanes* workspace)
     for (int i = 0; i < plan.length; ++i)
         buffer[i] = mul(data[i], plan.chirp[i]);
     std::fill(buffer + plan.length, buffer + padded.length, ComplexLanes{});
-    stockham(padded, buffer, rest);
+    stockhamPasses(padded, buffer, rest);
     for (int i = 0; i < padded.length; ++i) {
         const ComplexLanes product = mul(buffer[i], plan.chirp_spectrum[i]);
         buffer[i] = {product.im, product.re}; // swapped: the inverse
     }
-    stockham(padded, buffer, rest);
+    stockhamPasses(padded, buffer, rest);
     for (int i = 0; i < plan.length; ++i) {
         data[i] = mul(ComplexLanes{buffer[i].im, buffer[i].re}, plan.chirp[i]);
     }
@@ -176,6 +180,24 @@ void addBluestein(FftPlan& plan) {
     }
 }
 
+IBL_MULTIVERSION
+void combine(const PrunedFft& plan, const ComplexLanes* data, ComplexLanes* out) {
+    const int n = plan.length, size = plan.part.length;
+    const int first = ((-plan.most % n) + n) % n;
+    for (int k = -plan.most, at = first; k <= plan.most; ++k, at = at + 1 < n ? at + 1 : 0) {
+        const ComplexLanes* y = data + at % size;
+        ComplexLanes sum = *y;
+        int root = 0;
+        for (int q = 1; q < plan.split; ++q) {
+            y += size;
+            root += at;
+            if (root >= n) root -= n;
+            sum = add(sum, mul(*y, plan.roots[root]));
+        }
+        out[k + plan.most] = sum;
+    }
+}
+
 } // namespace
 
 FftPlan makeFftPlan(int length) {
@@ -201,6 +223,30 @@ void fft(const FftPlan& plan, ComplexLanes* data, ComplexLanes* workspace) {
         stockham(plan, data, workspace);
     else
         bluestein(plan, data, workspace);
+}
+
+PrunedFft makePrunedFft(int length, int most) {
+    PrunedFft plan;
+    plan.length = length;
+    plan.most = most;
+    // Each halving saves a pass over all inputs (half of a pass by four) and costs a product for
+    // each output and part.
+    constexpr double kHalfPass = 5.5, kProduct = 7;
+    while (plan.length / plan.split % 2 == 0 &&
+           kProduct * plan.split * (2.0 * most + 1) < kHalfPass * length) {
+        plan.split *= 2;
+    }
+    plan.part = makeFftPlan(length / plan.split);
+    for (int k = 0; k < length; ++k)
+        plan.roots.push_back(unitRoot(static_cast<double>(k) / length));
+    return plan;
+}
+
+void prunedFft(const PrunedFft& plan, ComplexLanes* data, ComplexLanes* workspace,
+               ComplexLanes* out) {
+    for (int q = 0; q < plan.split; ++q)
+        fft(plan.part, data + static_cast<std::ptrdiff_t>(q) * plan.part.length, workspace);
+    combine(plan, data, out);
 }
 
 int goodFftLength(int n) {

@@ -1,4 +1,4 @@
-// Fourier transforms of any length, eight at a time.
+// Fourier transforms of any length, kLanes at a time.
 #pragma once
 
 #include "convolve/simd.h"
@@ -27,6 +27,29 @@ std::size_t fftWorkspace(const FftPlan& plan);
 /// Transforms, in place, kLanes interleaved sequences: X_k = sum_j x_j exp(-2 pi i j k / n). Not
 /// normalised. (The inverse is the same with re and im swapped before and after.)
 void fft(const FftPlan& plan, ComplexLanes* data, ComplexLanes* workspace);
+
+/// The same where only the X_k with |k| <= `most` are wanted: the inputs i = q + Q p of each q are
+/// transformed by themselves, Y_q, and X_k = sum_q exp(-2 pi i k q / n) Y_q[k mod P], n = P Q. The
+/// cost grows as the length, not as its logarithm, and each transform is small.
+struct PrunedFft {
+    int length = 1;
+    int most = 0;
+    int split = 1;                           ///< Q
+    FftPlan part;                            ///< of length P
+    std::vector<std::complex<double>> roots; ///< exp(-2 pi i k / length)
+
+    /// Where input i stands.
+    std::size_t slot(int i) const {
+        return static_cast<std::size_t>(i % split) * part.length + i / split;
+    }
+};
+
+PrunedFft makePrunedFft(int length, int most);
+
+/// `data` holds the inputs, each at its slot, and is overwritten; X_k goes to out[k + most].
+/// `workspace` has fftWorkspace(plan.part) elements.
+void prunedFft(const PrunedFft& plan, ComplexLanes* data, ComplexLanes* workspace,
+               ComplexLanes* out);
 
 /// The smallest length >= n with no prime factor above 5.
 int goodFftLength(int n);

@@ -9,318 +9,437 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// Values below 2^-kNegligible are not summed; each carries a factor 2^(kStep * exponent) with
-/// exponent <= 0 and is summed when that is 0.
-constexpr int kNegligible = 100;
+/// A value is mantissa * 2^(kStep * exponent), exponent <= 0, and is summed from when the exponent
+/// is 0. Exponents are brought up to date every kDegrees degrees, in which a value grows by less
+/// than 2^88; the mantissa is let no higher than 2^324 before, so that nothing above 2^-100 is left
+/// out.
 constexpr int kStep = 512;
+constexpr double kHighest = 0x1p324, kLowest = 0x1p-188, kUnit = 0x1p512;
 
-/// Factors of the step from l to l + 2: P_(l+2) = (a x^2 - b) P_l - c P_(l-2).
-struct Step {
-    double a, b, c;
+/// Degrees and pairs done together: their Legendre functions fill half of the nearest cache.
+constexpr int kDegrees = 16;
+constexpr int kPairs = 128;
+
+/// The recurrence's factors for l = m .. degree, filled up with zeros to a multiple of kDegrees.
+struct Steps {
+    std::vector<double> a, b, t;
 };
 
-std::vector<Step> stepsOf(int m, int degree) {
-    const auto epsilon = [m](double l) {
-        return std::sqrt((l * l - 1.0 * m * m) / (4 * l * l - 1));
-    };
-    std::vector<Step> steps(static_cast<std::size_t>(degree - m + 1));
-    double before = 0, here = 0, after = epsilon(m + 1); // e_(l-1), e_l, e_(l+1); e_m = 0
-    for (int l = m; l <= degree; ++l) {
-        const double next = epsilon(l + 2), a = 1 / (after * next);
-        steps[l - m] = {a, a * (after * after + here * here), a * here * before};
-        before = here;
-        here = after;
-        after = next;
+IBL_INLINE void makeSteps(int m, int degree, std::vector<double>& e, Steps& steps) {
+    const int count = degree - m + 1;
+    const std::size_t padded = (count + kDegrees - 1) / kDegrees * kDegrees;
+    steps.a.assign(padded, 0.0);
+    steps.b.assign(padded, 0.0);
+    steps.t.assign(padded + 2, 1.0);
+    e.resize(static_cast<std::size_t>(count) + 3);
+    for (int i = 0; i < count + 3; ++i) { // e_(l-1) stands at i = l - m
+        const double l = m + i - 1;
+        e[i] = i < 2 ? 0 : std::sqrt((l * l - 1.0 * m * m) / (4 * l * l - 1));
     }
-    return steps;
+    double* t = steps.t.data();
+    for (int i = 0; i < count; ++i) {
+        const double down = e[i] * e[i + 1], up = 1 / (e[i + 2] * e[i + 3]);
+        t[i + 2] = i < 2 ? 1 : t[i - 2] * (down * up);
+        steps.a[i] = up;
+        steps.b[i] = e[i + 2] * e[i + 2] + e[i + 1] * e[i + 1];
+    }
+    for (int i = 0; i < count; ++i) {
+        steps.a[i] *= t[i] / t[i + 2];
+        steps.b[i] *= steps.a[i];
+    }
 }
 
-/// log2 of P_mm / sin^m theta = sqrt((2m+1)!! / (4 pi (2m)!!)).
-double log2Sectoral(int m) {
-    return 0.5 * ((std::lgamma(2.0 * m + 2) - 2 * std::lgamma(m + 1.0)) / std::numbers::ln2 -
-                  2.0 * m - std::log2(4 * kPi));
-}
-
-/// The two latest values of one parity's recurrence on V vectors of ring pairs.
-template <int V>
-struct Chain {
-    Lanes previous[V];
-    Lanes current[V];
-    Lanes x_squared[V];
-    LaneMask exponent[V];
+/// P_mm of all pairs, for one m after another.
+struct Sectoral {
+    int m = 0;
+    LaneVector<double> mantissa, exponent;
 };
 
-/// Start of the chain of l - m even (parity 0: P_mm) or odd (P_(m+1)m = sqrt(2m + 3) x P_mm).
-template <int V>
-IBL_INLINE void startChain(Chain<V>& chain, const RingGeometry& rings, int first, int m, int parity,
-                           double log2_sectoral) {
-    for (int v = 0; v < V; ++v) {
-        chain.x_squared[v] = rings.x_squared[first + v];
-        chain.previous[v] = Lanes{};
-        for (int i = 0; i < kLanes; ++i) {
-            const double log2_value =
-                log2_sectoral +
-                m * rings.log2_sin[static_cast<std::size_t>(first + v) * kLanes + i];
-            const double e = std::min(0.0, std::floor((log2_value + kNegligible) / kStep));
-            chain.exponent[v][i] = static_cast<std::int64_t>(e);
-            chain.current[v][i] = std::exp2(log2_value - kStep * e);
+/// P_mm = sqrt((2m+1)!! / (4 pi (2m)!!)) sin^m theta, by long logarithms, so that m times the
+/// rounding of log2 sin theta does not show.
+Sectoral startSectoral(const RingPairs& rings, int m) {
+    const long double factor = 0.5L * ((std::lgamma(2.0L * m + 2) - 2 * std::lgamma(m + 1.0L)) /
+                                           std::numbers::ln2_v<long double> -
+                                       2.0L * m - std::log2(4 * std::numbers::pi_v<long double>));
+    Sectoral start{m, LaneVector<double>(rings.pairs), LaneVector<double>(rings.pairs)};
+    for (int p = 0; p < rings.pairs; ++p) {
+        const long double value = m == 0 ? factor : factor + m * rings.log2_sin[p];
+        // A pole itself (sin theta = 0) has no harmonics but those of m = 0.
+        const long double e = std::max(-1e6L, std::min(0.0L, std::floor((value + 188) / kStep)));
+        start.exponent[p] = static_cast<double>(e);
+        start.mantissa[p] = static_cast<double>(std::exp2(value - kStep * e));
+    }
+    return start;
+}
+
+/// P_(m+1)(m+1) = sqrt((2m + 3) / (2m + 2)) sin theta P_mm.
+IBL_INLINE void nextSectoral(const RingPairs& rings, Sectoral& sectoral) {
+    const double factor = std::sqrt((2.0 * sectoral.m + 3) / (2.0 * sectoral.m + 2));
+    for (int p = 0; p < rings.pairs; ++p) {
+        const double next = sectoral.mantissa[p] * factor * rings.sin[p];
+        const bool low = next < kLowest;
+        sectoral.mantissa[p] = low ? next * kUnit : next;
+        sectoral.exponent[p] -= low ? 1 : 0;
+    }
+    ++sectoral.m;
+}
+
+/// The recurrence's state on up to kPairs pairs, in even (0) and odd (1) l - m.
+struct Chains {
+    alignas(64) double previous[2][kPairs];
+    alignas(64) double current[2][kPairs];
+    alignas(64) double exponent[kPairs];
+    alignas(64) double x_squared[kPairs];
+    int count; ///< pairs, a multiple of kPairGroup
+    int live;  ///< first pair of the first group that counts; the values before it are not set
+};
+
+IBL_INLINE void startChains(const RingPairs& rings, const Sectoral& sectoral, int first, int count,
+                            Chains& chains) {
+    const double odd = std::sqrt(2.0 * sectoral.m + 3);
+    chains.count = count;
+    chains.live = count;
+    for (int p = 0; p < count; ++p) {
+        const double value = sectoral.mantissa[first + p];
+        chains.x_squared[p] = rings.x_squared[first + p];
+        chains.exponent[p] = sectoral.exponent[first + p];
+        chains.previous[0][p] = chains.previous[1][p] = 0;
+        chains.current[0][p] = value;
+        chains.current[1][p] = odd * rings.x[first + p] * value; // P_(m+1)m = sqrt(2m+3) x P_mm
+    }
+}
+
+/// Moves factors of 2^kStep from a group's values that have grown into their exponents; `mask`
+/// receives 1 for each pair that counts. Returns how many do.
+IBL_INLINE int renormalise(Chains& chains, int group, double* mask) {
+    int live = 0;
+    for (int p = group; p < group + kPairGroup; ++p) {
+        const double size =
+            std::max(std::abs(chains.current[0][p]), std::abs(chains.current[1][p]));
+        const bool grown = chains.exponent[p] < 0 && size > kHighest;
+        const double factor = grown ? 1 / kUnit : 1;
+        for (int parity = 0; parity < 2; ++parity) {
+            chains.current[parity][p] *= factor;
+            chains.previous[parity][p] *= factor;
         }
-        if (parity == 1) chain.current[v] *= std::sqrt(2.0 * m + 3) * rings.x[first + v];
+        chains.exponent[p] += grown ? 1 : 0;
+        mask[p - group] = chains.exponent[p] == 0 ? 1 : 0;
+        live += chains.exponent[p] == 0 ? 1 : 0;
     }
+    return live;
 }
 
-template <int V>
-IBL_INLINE void advance(Chain<V>& chain, const Step& step) {
-    for (int v = 0; v < V; ++v) {
-        const Lanes next =
-            (step.a * chain.x_squared[v] - step.b) * chain.current[v] - step.c * chain.previous[v];
-        chain.previous[v] = chain.current[v];
-        chain.current[v] = next;
-    }
-}
+template <int Width>
+struct VectorOf {
+    typedef double Type __attribute__((vector_size(Width * sizeof(double)), may_alias));
+};
 
-/// Moves factors of 2^kStep from values that have grown into their exponents. Returns whether every
-/// lane now counts.
-template <int V>
-IBL_INLINE bool renormalise(Chain<V>& chain) {
-    bool all = true;
-    for (int v = 0; v < V; ++v) {
-        for (int i = 0; i < kLanes; ++i) {
-            if (chain.exponent[v][i] == 0) continue;
-            if (std::abs(chain.current[v][i]) > 0x1p412) {
-                chain.current[v][i] *= 0x1p-512;
-                chain.previous[v][i] *= 0x1p-512;
-                chain.exponent[v][i] += 1;
+/// One group's Legendre functions of kDegrees degrees from m + `from`: values[degree][pair].
+template <int Width>
+IBL_INLINE void advanceGroup(Chains& chains, const Steps& steps, int from, int group,
+                             double (*values)[kPairs]) {
+    using Vector = typename VectorOf<Width>::Type;
+    constexpr int kVectors = kPairGroup / Width;
+    alignas(64) double mask[kPairGroup];
+    const int live = renormalise(chains, group, mask);
+    if (live > 0) chains.live = std::min(chains.live, group);
+    Vector x[kVectors], p[2][kVectors], q[2][kVectors], counts[kVectors];
+    for (int v = 0; v < kVectors; ++v) {
+        const int at = group + v * Width;
+        x[v] = *reinterpret_cast<const Vector*>(chains.x_squared + at);
+        counts[v] = *reinterpret_cast<const Vector*>(mask + v * Width);
+        for (int parity = 0; parity < 2; ++parity) {
+            p[parity][v] = *reinterpret_cast<const Vector*>(chains.previous[parity] + at);
+            q[parity][v] = *reinterpret_cast<const Vector*>(chains.current[parity] + at);
+        }
+    }
+    const double *a = steps.a.data() + from, *b = steps.b.data() + from;
+    for (int i = 0; i < kDegrees; i += 2) {
+        for (int parity = 0; parity < 2; ++parity) {
+            for (int v = 0; v < kVectors; ++v) {
+                const Vector now = q[parity][v];
+                if (group >= chains.live) {
+                    *reinterpret_cast<Vector*>(values[i + parity] + group + v * Width) =
+                        live == kPairGroup ? now : now * counts[v];
+                }
+                q[parity][v] = (a[i + parity] * x[v] - b[i + parity]) * now - p[parity][v];
+                p[parity][v] = now;
             }
-            all = all && chain.exponent[v][i] == 0;
         }
     }
-    return all;
-}
-
-/// The values that count: those whose exponent is 0.
-template <int V>
-IBL_INLINE void liveValues(const Chain<V>& chain, Lanes* live) {
-    for (int v = 0; v < V; ++v) {
-        live[v] = chain.exponent[v] == 0 ? chain.current[v] : Lanes{};
+    for (int v = 0; v < kVectors; ++v) {
+        const int at = group + v * Width;
+        for (int parity = 0; parity < 2; ++parity) {
+            *reinterpret_cast<Vector*>(chains.previous[parity] + at) = p[parity][v];
+            *reinterpret_cast<Vector*>(chains.current[parity] + at) = q[parity][v];
+        }
     }
 }
 
-/// sums[l][part] += P_l g_part over V vectors of pairs. `g` is [part][v].
-template <int V>
-IBL_INLINE void analyseChain(Chain<V>& chain, const std::vector<Step>& steps, const Lanes* g,
-                             int parity, int count, Lanes* sums) {
-    bool all = renormalise(chain);
-    for (int i = parity; i < count; i += 2) {
-        Lanes live[V];
-        if (all)
-            std::copy(chain.current, chain.current + V, live);
-        else
-            liveValues(chain, live);
-        Lanes* sum = sums + static_cast<std::ptrdiff_t>(i) * kParts;
+template <int Width>
+IBL_INLINE void advance(Chains& chains, const Steps& steps, int from, double (*values)[kPairs]) {
+    for (int group = 0; group < chains.count; group += kPairGroup)
+        advanceGroup<Width>(chains, steps, from, group, values);
+}
+
+/// sums[degree][part] += over pairs of values[degree][pair] g[part][pair], for four degrees of one
+/// parity and three parts: twelve sums in registers.
+template <int Width>
+IBL_INLINE void sumPairs(const Chains& chains, const double (*values)[kPairs], const double* g,
+                         std::ptrdiff_t stride, double* sums) {
+    using Vector = typename VectorOf<Width>::Type;
+    constexpr int kFour = 4, kThree = 3;
+    Vector total[kFour][kThree] = {};
+    for (int p = chains.live; p < chains.count; p += Width) {
+        Vector part[kThree];
+        for (int c = 0; c < kThree; ++c)
+            part[c] = *reinterpret_cast<const Vector*>(g + c * stride + p);
+        for (int i = 0; i < kFour; ++i) {
+            const Vector value = *reinterpret_cast<const Vector*>(values[2 * i] + p);
+            for (int c = 0; c < kThree; ++c)
+                total[i][c] += value * part[c];
+        }
+    }
+    for (int i = 0; i < kFour; ++i) {
+        for (int c = 0; c < kThree; ++c) {
+            double sum = 0;
+            for (int lane = 0; lane < Width; ++lane)
+                sum += total[i][c][lane];
+            sums[2 * i * kParts + c] += sum;
+        }
+    }
+}
+
+/// g[part][pair] += over kDegrees degrees of one parity of coefficients[degree][part]
+/// values[degree][pair].
+template <int Width>
+IBL_INLINE void sumDegrees(const Chains& chains, const double (*values)[kPairs],
+                           const Parts* coefficients, double* g, std::ptrdiff_t stride) {
+    using Vector = typename VectorOf<Width>::Type;
+    constexpr int kVectors = Width == kPairGroup ? 1 : 2;
+    for (int p = chains.live; p < chains.count; p += kVectors * Width) {
+        Vector total[kParts][kVectors];
         for (int part = 0; part < kParts; ++part) {
-            Lanes total = sum[part];
-            for (int v = 0; v < V; ++v)
-                total += live[v] * g[part * V + v];
-            sum[part] = total;
+            for (int v = 0; v < kVectors; ++v)
+                total[part][v] =
+                    *reinterpret_cast<const Vector*>(g + part * stride + p + v * Width);
         }
-        advance(chain, steps[i]);
-        if (!all) all = renormalise(chain);
-    }
-}
-
-/// g[part][v] = sum over l of coefficients[l][part] P_l.
-template <int V>
-IBL_INLINE void synthesiseChain(Chain<V>& chain, const std::vector<Step>& steps,
-                                const Parts* coefficients, int parity, int count, Lanes* g) {
-    Lanes sum[kParts][V] = {};
-    bool all = renormalise(chain);
-    for (int i = parity; i < count; i += 2) {
-        Lanes live[V];
-        if (all)
-            std::copy(chain.current, chain.current + V, live);
-        else
-            liveValues(chain, live);
+        for (int i = 0; i < kDegrees; i += 2) {
+            Vector value[kVectors];
+            for (int v = 0; v < kVectors; ++v)
+                value[v] = *reinterpret_cast<const Vector*>(values[i] + p + v * Width);
+            for (int part = 0; part < kParts; ++part) {
+                for (int v = 0; v < kVectors; ++v)
+                    total[part][v] += coefficients[i][part] * value[v];
+            }
+        }
         for (int part = 0; part < kParts; ++part) {
-            for (int v = 0; v < V; ++v)
-                sum[part][v] += live[v] * coefficients[i][part];
+            for (int v = 0; v < kVectors; ++v)
+                *reinterpret_cast<Vector*>(g + part * stride + p + v * Width) = total[part][v];
         }
-        advance(chain, steps[i]);
-        if (!all) all = renormalise(chain);
-    }
-    for (int part = 0; part < kParts; ++part) {
-        for (int v = 0; v < V; ++v)
-            g[part * V + v] = sum[part][v];
     }
 }
 
-/// Above this order nothing on a ring of that sine reaches 2^-kNegligible by the last degree: P_lm
-/// falls off exponentially once m exceeds l sin theta (Reinecke and Seljebotn 2013, section 2.3).
+/// Above this order nothing on a ring of that sine reaches 2^-100 by the last degree: P_lm falls
+/// off exponentially once m exceeds l sin theta (Reinecke and Seljebotn 2013, section 2.3).
 bool negligible(int m, int degree, double sin_theta) {
     return m > degree * sin_theta + std::max(100.0, 0.01 * degree);
 }
 
-struct AnalysisTask {
-    const RingGeometry& rings;
-    const std::vector<Step>& steps;
-    const Lanes* even; ///< [part][vector]: sum of a pair's rings, weighted
-    const Lanes* odd;  ///< their difference
-    int m;
-    int degree;
-    double log2_sectoral;
-};
-
-template <int V>
-IBL_INLINE void analyseBlock(const AnalysisTask& task, int first, Lanes* sums) {
-    const int vectors = task.rings.rings / (2 * kLanes);
-    if (negligible(task.m, task.degree, task.rings.sin[(first + V) * kLanes - 1])) return;
-    for (int parity = 0; parity < 2; ++parity) {
-        Lanes g[kParts * V];
-        for (int part = 0; part < kParts; ++part) {
-            for (int v = 0; v < V; ++v) {
-                g[part * V + v] = (parity == 0 ? task.even : task.odd)[part * vectors + first + v];
-            }
-        }
-        Chain<V> chain;
-        startChain(chain, task.rings, first, task.m, parity, task.log2_sectoral);
-        analyseChain(chain, task.steps, g, parity, task.degree - task.m + 1, sums);
-    }
-}
-
-IBL_MULTIVERSION
-void analyseRings(const AnalysisTask& task, Lanes* sums) {
-    const int vectors = task.rings.rings / (2 * kLanes);
+/// First pair of the first group that is not negligible.
+int firstPair(const RingPairs& rings, int m, int degree) {
     int first = 0;
-    for (; first + 4 <= vectors; first += 4)
-        analyseBlock<4>(task, first, sums);
-    for (; first < vectors; ++first)
-        analyseBlock<1>(task, first, sums);
+    while (first < rings.pairs && negligible(m, degree, rings.sin[first + kPairGroup - 1]))
+        first += kPairGroup;
+    return first;
 }
 
-struct SynthesisTask {
-    const RingGeometry& rings;
-    const std::vector<Step>& steps;
-    const Parts* coefficients; ///< k_l f_lm, l = m .. degree
-    int m;
+struct Task {
+    const RingPairs& rings;
+    int first;
+    int count;
     int degree;
-    double log2_sectoral;
 };
 
-template <int V>
-IBL_INLINE void synthesiseBlock(const SynthesisTask& task, int first, Lanes* even, Lanes* odd) {
-    const int vectors = task.rings.rings / (2 * kLanes);
-    const bool skip = negligible(task.m, task.degree, task.rings.sin[(first + V) * kLanes - 1]);
-    for (int parity = 0; parity < 2; ++parity) {
-        Lanes g[kParts * V] = {};
-        if (!skip) {
-            Chain<V> chain;
-            startChain(chain, task.rings, first, task.m, parity, task.log2_sectoral);
-            synthesiseChain(chain, task.steps, task.coefficients, parity, task.degree - task.m + 1,
-                            g);
-        }
-        for (int part = 0; part < kParts; ++part) {
-            for (int v = 0; v < V; ++v) {
-                (parity == 0 ? even : odd)[part * vectors + first + v] = g[part * V + v];
+template <int Width>
+IBL_INLINE void analyseOrder(const RingPairs& rings, const Sectoral& sectoral, const Steps& steps,
+                             int degree, const double* g, Parts* sums) {
+    alignas(64) double values[kDegrees][kPairs];
+    Chains chains;
+    const int count = degree - sectoral.m + 1;
+    const std::ptrdiff_t odd = static_cast<std::ptrdiff_t>(kParts) * rings.pairs;
+    for (int first = firstPair(rings, sectoral.m, degree); first < rings.pairs; first += kPairs) {
+        startChains(rings, sectoral, first, std::min(kPairs, rings.pairs - first), chains);
+        for (int from = 0; from < count; from += kDegrees) {
+            advance<Width>(chains, steps, from, values);
+            for (int i = 0; i < kDegrees; i += i % 2 ? 7 : 1) { // 0, 1, 8, 9
+                for (int c = 0; c < kParts; c += 3) {
+                    const double* part = g + (i % 2) * odd + c * rings.pairs + first;
+                    sumPairs<Width>(chains, values + i, part, rings.pairs,
+                                    sums[from + i].data() + c);
+                }
             }
         }
     }
 }
 
-IBL_MULTIVERSION
-void synthesiseRings(const SynthesisTask& task, Lanes* even, Lanes* odd) {
-    const int vectors = task.rings.rings / (2 * kLanes);
-    int first = 0;
-    for (; first + 2 <= vectors; first += 2)
-        synthesiseBlock<2>(task, first, even, odd);
-    for (; first < vectors; ++first)
-        synthesiseBlock<1>(task, first, even, odd);
+template <int Width>
+IBL_INLINE void synthesiseOrder(const RingPairs& rings, const Sectoral& sectoral,
+                                const Steps& steps, int degree, const Parts* coefficients,
+                                double* g) {
+    alignas(64) double values[kDegrees][kPairs];
+    Chains chains;
+    const int count = degree - sectoral.m + 1;
+    const std::ptrdiff_t odd = static_cast<std::ptrdiff_t>(kParts) * rings.pairs;
+    for (int first = firstPair(rings, sectoral.m, degree); first < rings.pairs; first += kPairs) {
+        startChains(rings, sectoral, first, std::min(kPairs, rings.pairs - first), chains);
+        for (int from = 0; from < count; from += kDegrees) {
+            advance<Width>(chains, steps, from, values);
+            for (int parity = 0; parity < 2; ++parity) {
+                sumDegrees<Width>(chains, values + parity, coefficients + from + parity,
+                                  g + parity * odd + first, rings.pairs);
+            }
+        }
+    }
+}
+
+/// Sums and differences of a pair's rings, weighted: g[even, odd][part][pair].
+IBL_INLINE void foldPairs(const RingPairs& rings, const double* column, double* g) {
+    const int pairs = rings.pairs;
+    const double weight = kPi / (2.0 * pairs);
+    for (int part = 0; part < kParts; ++part) {
+        const double *upper = column + static_cast<std::ptrdiff_t>(part) * 2 * pairs,
+                     *lower = upper + 2 * pairs - 1;
+        double *even = g + static_cast<std::ptrdiff_t>(part) * pairs, *odd = even + kParts * pairs;
+        for (int p = 0; p < pairs; ++p) {
+            const double w = weight * rings.sin[p];
+            even[p] = w * (upper[p] + lower[-p]);
+            odd[p] = w * (upper[p] - lower[-p]);
+        }
+    }
+}
+
+template <int Width>
+IBL_INLINE void analyseOrders(const Task& task, const double* columns, Harmonics& harmonics) {
+    const RingPairs& rings = task.rings;
+    const std::ptrdiff_t column = static_cast<std::ptrdiff_t>(kParts) * 2 * rings.pairs;
+    Sectoral sectoral = startSectoral(rings, task.first);
+    Steps steps;
+    std::vector<double> e;
+    LaneVector<double> g(static_cast<std::size_t>(column));
+    std::vector<Parts> sums;
+    for (int m = task.first; m < task.first + task.count; ++m) {
+        makeSteps(m, task.degree, e, steps);
+        sums.assign(steps.a.size(), Parts{});
+        foldPairs(rings, columns + (m - task.first) * column, g.data());
+        analyseOrder<Width>(rings, sectoral, steps, task.degree, g.data(), sums.data());
+        Parts* out = &harmonics.at(m, m);
+        for (int i = 0; i <= task.degree - m; ++i) {
+            for (int part = 0; part < kParts; ++part)
+                out[i][part] = steps.t[i] * sums[i][part];
+        }
+        nextSectoral(rings, sectoral);
+    }
+}
+
+template <int Width>
+IBL_INLINE void synthesiseOrders(const Task& task, const Harmonics& harmonics, const double* scale,
+                                 double* columns) {
+    const RingPairs& rings = task.rings;
+    const std::ptrdiff_t column = static_cast<std::ptrdiff_t>(kParts) * 2 * rings.pairs;
+    Sectoral sectoral = startSectoral(rings, task.first);
+    Steps steps;
+    std::vector<double> e;
+    std::vector<Parts> coefficients;
+    std::fill(columns, columns + task.count * column, 0.0);
+    for (int m = task.first; m < task.first + task.count; ++m) {
+        makeSteps(m, task.degree, e, steps);
+        coefficients.assign(steps.a.size(), Parts{});
+        const Parts* f = &harmonics.at(m, m);
+        for (int i = 0; i <= task.degree - m; ++i) {
+            for (int part = 0; part < kParts; ++part)
+                coefficients[i][part] = steps.t[i] * scale[m + i] * f[i][part];
+        }
+        synthesiseOrder<Width>(rings, sectoral, steps, task.degree, coefficients.data(),
+                               columns + (m - task.first) * column);
+        nextSectoral(rings, sectoral);
+    }
+}
+
+// The width is that of the instruction set's registers, which a clone of one function cannot know.
+#if defined(__x86_64__)
+[[gnu::target("arch=x86-64-v4")]] void analyseTask(const Task& task, const double* columns,
+                                                   Harmonics& harmonics) {
+    analyseOrders<8>(task, columns, harmonics);
+}
+[[gnu::target("arch=x86-64-v3")]] void analyseTask(const Task& task, const double* columns,
+                                                   Harmonics& harmonics) {
+    analyseOrders<4>(task, columns, harmonics);
+}
+[[gnu::target("arch=x86-64-v4")]] void synthesiseTask(const Task& task, const Harmonics& harmonics,
+                                                      const double* scale, double* columns) {
+    synthesiseOrders<8>(task, harmonics, scale, columns);
+}
+[[gnu::target("arch=x86-64-v3")]] void synthesiseTask(const Task& task, const Harmonics& harmonics,
+                                                      const double* scale, double* columns) {
+    synthesiseOrders<4>(task, harmonics, scale, columns);
+}
+[[gnu::target("default")]]
+#endif
+void analyseTask(const Task& task, const double* columns, Harmonics& harmonics) {
+    analyseOrders<2>(task, columns, harmonics);
+}
+#if defined(__x86_64__)
+[[gnu::target("default")]]
+#endif
+void synthesiseTask(const Task& task, const Harmonics& harmonics, const double* scale,
+                    double* columns) {
+    synthesiseOrders<2>(task, harmonics, scale, columns);
 }
 
 } // namespace
 
-RingGeometry makeRings(int rings) {
-    RingGeometry geometry;
-    geometry.rings = rings;
-    const int pairs = rings / 2;
-    geometry.x.resize(static_cast<std::size_t>(pairs / kLanes));
-    geometry.x_squared.resize(geometry.x.size());
-    geometry.sin.resize(static_cast<std::size_t>(pairs));
-    geometry.log2_sin.resize(geometry.sin.size());
-    for (int r = 0; r < pairs; ++r) {
-        const double theta = kPi * (r + 0.5) / rings, x = std::cos(theta);
-        geometry.x[r / kLanes][r % kLanes] = x;
-        geometry.x_squared[r / kLanes][r % kLanes] = x * x;
-        geometry.sin[r] = std::sin(theta);
-        geometry.log2_sin[r] = std::log2(geometry.sin[r]);
+RingPairs makePairs(std::vector<double> thetas) {
+    while (thetas.size() % kPairGroup != 0)
+        thetas.push_back(thetas.back());
+    RingPairs pairs;
+    pairs.pairs = static_cast<int>(thetas.size());
+    for (const double theta : thetas) {
+        const double x = std::cos(theta);
+        pairs.x.push_back(x);
+        pairs.x_squared.push_back(x * x);
+        pairs.sin.push_back(std::sin(theta));
+        pairs.log2_sin.push_back(std::log2(std::sin(static_cast<long double>(theta))));
     }
-    return geometry;
+    return pairs;
+}
+
+RingPairs makeRings(int rings) {
+    std::vector<double> thetas;
+    for (int r = 0; r < rings / 2; ++r)
+        thetas.push_back(kPi * (r + 0.5) / rings);
+    return makePairs(std::move(thetas));
 }
 
 int ringsFor(int degree) {
-    // Twice as many points on the great circle must also make a good Fourier length.
-    for (int q = (degree + 2 + 2 * kLanes - 1) / (2 * kLanes);; ++q) {
+    for (int q = (degree + 2 + 2 * kPairGroup - 1) / (2 * kPairGroup);; ++q) {
         int rest = q;
         for (const int p : {2, 3, 5}) {
             while (rest % p == 0)
                 rest /= p;
         }
-        if (rest == 1) return 2 * kLanes * q;
+        if (rest == 1) return 2 * kPairGroup * q;
     }
 }
 
-void legendreAnalysis(const RingGeometry& rings, const double* rings_of_m, int m,
+void legendreAnalysis(const RingPairs& pairs, const double* columns, int first, int count,
                       Harmonics& harmonics) {
-    const int pairs = rings.rings / 2, count = harmonics.degree - m + 1;
-    const std::size_t vectors = static_cast<std::size_t>(pairs / kLanes);
-    LaneVector<Lanes> even(kParts * vectors), odd(kParts * vectors);
-    for (int part = 0; part < kParts; ++part) {
-        const double* g = rings_of_m + static_cast<std::ptrdiff_t>(part) * rings.rings;
-        for (int r = 0; r < pairs; ++r) {
-            const double w = kPi / rings.rings * rings.sin[r];
-            const std::size_t v = part * vectors + r / kLanes;
-            even[v][r % kLanes] = w * (g[r] + g[rings.rings - 1 - r]);
-            odd[v][r % kLanes] = w * (g[r] - g[rings.rings - 1 - r]);
-        }
-    }
-    const std::vector<Step> steps = stepsOf(m, harmonics.degree);
-    LaneVector<Lanes> sums(static_cast<std::size_t>(count) * kParts, Lanes{});
-    analyseRings({rings, steps, even.data(), odd.data(), m, harmonics.degree, log2Sectoral(m)},
-                 sums.data());
-    Parts* out = &harmonics.at(m, m);
-    for (int i = 0; i < count; ++i) {
-        for (int part = 0; part < kParts; ++part) {
-            const Lanes& sum = sums[static_cast<std::size_t>(i) * kParts + part];
-            double total = 0;
-            for (int lane = 0; lane < kLanes; ++lane)
-                total += sum[lane];
-            out[i][part] = total;
-        }
-    }
+    analyseTask({pairs, first, count, harmonics.degree}, columns, harmonics);
 }
 
-void legendreSynthesis(const RingGeometry& rings, const Harmonics& harmonics, const double* scale,
-                       int degree, int m, double* rings_of_m) {
-    const int pairs = rings.rings / 2;
-    const std::size_t vectors = static_cast<std::size_t>(pairs / kLanes);
-    std::vector<Parts> scaled(static_cast<std::size_t>(degree - m + 1));
-    const Parts* f = &harmonics.at(m, m);
-    for (int l = m; l <= degree; ++l) {
-        for (int part = 0; part < kParts; ++part)
-            scaled[l - m][part] = scale[l] * f[l - m][part];
-    }
-    const std::vector<Step> steps = stepsOf(m, degree);
-    LaneVector<Lanes> even(kParts * vectors), odd(kParts * vectors);
-    synthesiseRings({rings, steps, scaled.data(), m, degree, log2Sectoral(m)}, even.data(),
-                    odd.data());
-    for (int part = 0; part < kParts; ++part) {
-        double* g = rings_of_m + static_cast<std::ptrdiff_t>(part) * rings.rings;
-        for (int r = 0; r < pairs; ++r) {
-            const double e = even[part * vectors + r / kLanes][r % kLanes];
-            const double o = odd[part * vectors + r / kLanes][r % kLanes];
-            g[r] = e + o;
-            g[rings.rings - 1 - r] = e - o;
-        }
-    }
+void legendreSynthesis(const RingPairs& pairs, const Harmonics& harmonics, const double* scale,
+                       int degree, int first, int count, double* columns) {
+    synthesiseTask({pairs, first, count, degree}, harmonics, scale, columns);
 }
 
 } // namespace ibl

@@ -8,6 +8,12 @@
 //     P_(l+2) = [(x^2 - e_(l+1)^2 - e_l^2) P_l - e_l e_(l-1) P_(l-2)] / (e_(l+1) e_(l+2)),
 //     e_l = sqrt((l^2 - m^2) / (4 l^2 - 1)),  x = cos theta.
 //
+// With P_l = t_l Q_l and t_(l+2) = t_(l-2) e_l e_(l-1) / (e_(l+1) e_(l+2)) the last factor is 1:
+//
+//     Q_(l+2) = (a_l x^2 - b_l) Q_l - Q_(l-2),
+//
+// two fused operations a step; t_l goes into the coefficients.
+//
 // P_mm ~ sin^m theta underflows near the poles, so values carry a power of two beside them until
 // they are large enough to matter.
 #pragma once
@@ -38,29 +44,39 @@ struct Harmonics {
     const Parts& at(int l, int m) const { return coefficients[index(l, m)]; }
 };
 
-/// Rings at theta = pi (r + 0.5) / rings; `rings` is a multiple of 2 kLanes, so that the pairs
-/// (r, rings - 1 - r) fill whole vectors.
-struct RingGeometry {
-    int rings = 0;
-    LaneVector<Lanes> x_squared;  ///< cos^2 theta of each pair
-    LaneVector<Lanes> x;          ///< cos theta of the upper ring
-    std::vector<double> log2_sin; ///< log2 sin theta of each pair
-    std::vector<double> sin;      ///< sin theta of each pair
+/// Ring pairs theta and pi - theta in order of growing sin theta; their number is a multiple of
+/// kPairGroup.
+struct RingPairs {
+    int pairs = 0;
+    LaneVector<double> x;              ///< cos theta of the upper ring
+    LaneVector<double> x_squared;      ///< its square
+    std::vector<double> sin;           ///< sin theta
+    std::vector<long double> log2_sin; ///< log2 sin theta
 };
 
-RingGeometry makeRings(int rings);
+inline constexpr int kPairGroup = 8;
 
-/// Least number of rings, of those makeRings takes, that holds fields of this degree: more than
-/// degree + 1.
+/// The pairs at the given thetas, ascending in [0, pi / 2]; the last is repeated to fill a group.
+RingPairs makePairs(std::vector<double> thetas);
+
+/// The pairs (r, rings - 1 - r) of rings at theta = pi (r + 0.5) / rings; `rings` is a multiple of
+/// 2 kPairGroup.
+RingPairs makeRings(int rings);
+
+/// Least number of rings, of those makeRings takes, that holds fields of this degree (more than
+/// degree + 1) and twice which is a good length for Fourier transforms.
 int ringsFor(int degree);
 
-/// f_lm = sum over rings of weight_r g_m(theta_r) P_lm(theta_r) for one m and l = m .. degree, with
-/// the weights pi / rings * sin theta_r. `rings_of_m` holds kParts x rings values of g_m.
-void legendreAnalysis(const RingGeometry& rings, const double* rings_of_m, int m,
+/// f_lm = sum over rings of weight_r g_m(theta_r) P_lm(theta_r) for `count` orders from `first` and
+/// l = m .. degree, with the weights pi / rings * sin theta_r. `columns` holds g_m,
+/// [m][part][ring].
+void legendreAnalysis(const RingPairs& pairs, const double* columns, int first, int count,
                       Harmonics& harmonics);
 
-/// g_m(theta_r) = sum over l = m .. degree of k_l f_lm P_lm(theta_r), for one m; `scale` holds k_l.
-void legendreSynthesis(const RingGeometry& rings, const Harmonics& harmonics, const double* scale,
-                       int degree, int m, double* rings_of_m);
+/// g_m(theta) = sum over l = m .. degree of k_l f_lm P_lm(theta) for `count` orders from `first`;
+/// `scale` holds k_l. `columns` receives [m][even, odd][part][pair]: g_m is even + odd on the upper
+/// ring of a pair and even - odd on the lower one.
+void legendreSynthesis(const RingPairs& pairs, const Harmonics& harmonics, const double* scale,
+                       int degree, int first, int count, double* columns);
 
 } // namespace ibl

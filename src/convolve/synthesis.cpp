@@ -13,51 +13,131 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr int kRingsAtOnce = 2 * kLanes;
-constexpr int kMGroup = 2 * kLanes;
+constexpr int kTaps = Interpolant::kTaps;
 
 typedef float Pixel __attribute__((vector_size(16)));
+typedef float TwoPixels __attribute__((vector_size(32)));
 
-/// g_m(theta_r) of all m on `rings` rings: [m][part][ring].
-std::vector<double> synthesiseRingSpectra(const Harmonics& harmonics,
-                                          const std::vector<double>& scale, int degree, int rings,
-                                          int threads) {
-    const RingGeometry coarse = makeRings(ringsFor(degree));
-    const ThetaResample plan = makeThetaResample(coarse.rings, rings, degree, RingSource::samples);
-    std::vector<double> result(static_cast<std::size_t>(degree + 1) * kParts * rings);
-    const std::ptrdiff_t column = static_cast<std::ptrdiff_t>(kParts) * coarse.rings;
-    parallelFor(degree / kMGroup + 1, threads, [&](std::size_t group) {
-        const int first = static_cast<int>(group) * kMGroup;
-        const int end = std::min(first + kMGroup, degree + 1);
-        std::vector<double> columns(static_cast<std::size_t>(kMGroup * column));
-        for (int m = first; m < end; ++m) {
-            legendreSynthesis(coarse, harmonics, scale.data(), degree, m,
-                              columns.data() + (m - first) * column);
+int gridRings(int degree) {
+    const double least = kOversampling * (degree + 0.5) / kRingsAtOnce;
+    return kRingsAtOnce * goodFftLength(static_cast<int>(std::ceil(least)));
+}
+
+/// 1 / phi^ for waves of 0 .. degree periods on a circle of so many samples; 1 where the samples
+/// are to be the field's values.
+std::vector<double> gains(int degree, int samples, bool interpolated) {
+    std::vector<double> result(static_cast<std::size_t>(degree + 1), 1.0);
+    for (int k = 0; interpolated && k <= degree; ++k)
+        result[k] = 1 / windowTransform(static_cast<double>(k) / samples);
+    return result;
+}
+
+/// Rings theta and pi - theta from their even and odd parts: [m][part][ring].
+IBL_MULTIVERSION
+void ringsOfPairs(const double* pairs_of, int orders, int pairs, double* rings_of) {
+    const std::ptrdiff_t half = static_cast<std::ptrdiff_t>(kParts) * pairs;
+    for (int m = 0; m < orders; ++m) {
+        for (int part = 0; part < kParts; ++part) {
+            const double *even = pairs_of + 2 * m * half + part * pairs, *odd = even + half;
+            double *upper = rings_of + 2 * (m * half + part * pairs),
+                   *lower = upper + 2 * pairs - 1;
+            for (int p = 0; p < pairs; ++p) {
+                upper[p] = even[p] + odd[p];
+                lower[-p] = even[p] - odd[p];
+            }
         }
-        thetaResample(plan, columns.data(), end - first,
-                      result.data() + static_cast<std::ptrdiff_t>(first) * kParts * rings);
+    }
+}
+
+/// g_m(theta_r) of all m on `rings` rings, columns together, each wave in theta times its gain.
+LaneVector<double> synthesiseRingSpectra(const Harmonics& harmonics,
+                                         const std::vector<double>& scale, int degree, int rings,
+                                         const std::vector<double>& gain, int threads) {
+    const RingPairs pairs = makeRings(ringsFor(degree));
+    const int coarse = 2 * pairs.pairs;
+    ThetaResample plan = makeThetaResample(coarse, rings, degree, RingSource::samples);
+    for (int k = -degree; k <= degree; ++k)
+        plan.factors[k + degree] *= gain[std::abs(k)];
+    const ColumnLayout together = columnsTogether(degree + 1);
+    LaneVector<double> result(static_cast<std::size_t>(together.block) * rings / kLanes);
+    parallelFor(degree / kColumnsAtOnce + 1, threads, [&](std::size_t group) {
+        const int first = static_cast<int>(group) * kColumnsAtOnce;
+        const int orders = std::min(kColumnsAtOnce, degree + 1 - first);
+        LaneVector<double> even_odd(static_cast<std::size_t>(orders) * kParts * coarse);
+        LaneVector<double> columns(even_odd.size());
+        legendreSynthesis(pairs, harmonics, scale.data(), degree, first, orders, even_odd.data());
+        ringsOfPairs(even_odd.data(), orders, pairs.pairs, columns.data());
+        thetaResample(plan, columns.data(), columnsApart(coarse), orders,
+                      result.data() + static_cast<std::ptrdiff_t>(first) * kParts * kLanes,
+                      together);
     });
     return result;
 }
 
-/// Rings first .. first + kRingsAtOnce - 1 of the field, one channel: real rings A (the first
-/// eight) and B share a complex transform, X_m = A_m + i B_m, X_-m = conj A_m + i conj B_m.
-void loadRing(const std::vector<double>& spectra, int degree, int rings, int first, int channel,
-              int columns, ComplexLanes* data) {
-    std::fill(data, data + columns, ComplexLanes{});
+/// Two blocks of rings A and B of one channel share a complex transform: X_m = A_m + i B_m, X_-m =
+/// conj A_m + i conj B_m. Real and imaginary parts are swapped, so that the forward transform is
+/// the inverse.
+IBL_MULTIVERSION
+void loadRings(const double* upper, const double* lower, const std::vector<double>& gain,
+               int columns, int channel, ComplexLanes* data) {
+    const int degree = static_cast<int>(gain.size()) - 1;
+    std::fill(data + degree + 1, data + columns - degree, ComplexLanes{});
     for (int m = 0; m <= degree; ++m) {
-        const double* re = spectra.data() +
-                           (static_cast<std::ptrdiff_t>(m) * kParts + 2 * channel) * rings + first;
-        const double* im = re + rings;
-        Lanes are, aim, bre, bim;
-        for (int lane = 0; lane < kLanes; ++lane) {
-            are[lane] = re[lane];
-            aim[lane] = m == 0 ? 0 : im[lane];
-            bre[lane] = re[kLanes + lane];
-            bim[lane] = m == 0 ? 0 : im[kLanes + lane];
-        }
-        // Real and imaginary parts swapped, so that the forward transform is the inverse.
+        const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(m) * kParts + 2 * channel;
+        const Lanes *a = reinterpret_cast<const Lanes*>(upper) + at,
+                    *b = reinterpret_cast<const Lanes*>(lower) + at;
+        const double g = gain[m], g_im = m == 0 ? 0 : g;
+        const Lanes are = g * a[0], aim = g_im * a[1], bre = g * b[0], bim = g_im * b[1];
         data[m] = {aim + bre, are - bim};
         if (m > 0) data[columns - m] = {bre - aim, are + bim};
+    }
+}
+
+/// The rings' spectra transformed and handed on: `take(first, channels)` with the kRingsAtOnce
+/// rings from `first`, the first kLanes in the imaginary parts, the others in the real ones.
+template <class Take>
+void transformRings(const LaneVector<double>& spectra, const std::vector<double>& gain, int rings,
+                    int threads, const Take& take) {
+    const int columns = 2 * rings;
+    const FftPlan plan = makeFftPlan(columns);
+    const std::ptrdiff_t block_size = columnsTogether(static_cast<int>(gain.size())).block;
+    parallelFor(rings / kRingsAtOnce, threads, [&](std::size_t block) {
+        LaneVector<ComplexLanes> data(static_cast<std::size_t>(3 * columns)),
+            work(fftWorkspace(plan));
+        const double* upper = spectra.data() + 2 * static_cast<std::ptrdiff_t>(block) * block_size;
+        const ComplexLanes* channels[3];
+        for (int channel = 0; channel < 3; ++channel) {
+            ComplexLanes* values = data.data() + static_cast<std::ptrdiff_t>(channel) * columns;
+            loadRings(upper, upper + block_size, gain, columns, channel, values);
+            fft(plan, values, work.data());
+            channels[channel] = values;
+        }
+        take(static_cast<int>(block) * kRingsAtOnce, channels);
+    });
+}
+
+/// kLanes rings of kLanes pixels' worth of one column: a 4 x 4 transposition.
+IBL_INLINE void storeColumn(const Lanes& r, const Lanes& g, const Lanes& b, float* out,
+                            std::size_t row) {
+    const Pixel x = __builtin_convertvector(r, Pixel), y = __builtin_convertvector(g, Pixel),
+                z = __builtin_convertvector(b, Pixel), zero = {};
+    const Pixel xy0 = __builtin_shufflevector(x, y, 0, 4, 1, 5),
+                xy1 = __builtin_shufflevector(x, y, 2, 6, 3, 7),
+                z0 = __builtin_shufflevector(z, zero, 0, 4, 1, 5),
+                z1 = __builtin_shufflevector(z, zero, 2, 6, 3, 7);
+    const Pixel pixels[kLanes] = {
+        __builtin_shufflevector(xy0, z0, 0, 1, 4, 5), __builtin_shufflevector(xy0, z0, 2, 3, 6, 7),
+        __builtin_shufflevector(xy1, z1, 0, 1, 4, 5), __builtin_shufflevector(xy1, z1, 2, 3, 6, 7)};
+    for (int lane = 0; lane < kLanes; ++lane)
+        __builtin_memcpy(out + lane * row, &pixels[lane], sizeof(Pixel));
+}
+
+IBL_MULTIVERSION
+void storeRings(const ComplexLanes* const* channels, int columns, float* out, std::size_t row) {
+    const ComplexLanes *r = channels[0], *g = channels[1], *b = channels[2];
+    for (int i = 0; i < columns; ++i, out += 4) {
+        storeColumn(r[i].im, g[i].im, b[i].im, out, row);
+        storeColumn(r[i].re, g[i].re, b[i].re, out + kLanes * row, row);
     }
 }
 
@@ -83,20 +163,43 @@ void fillMargins(SmoothField& field) {
     }
 }
 
-/// Weights of 8-point Lagrange interpolation at 3 + t of the points 0 .. 7, t in [0, 1].
-IBL_INLINE void lagrangeWeights(double t, float* weights) {
-    constexpr int kTaps = SmoothField::kTaps;
-    constexpr double kInverse[kTaps] = {-1.0 / 5040, 1.0 / 720, -1.0 / 240, 1.0 / 144,
-                                        -1.0 / 144,  1.0 / 240, -1.0 / 720, 1.0 / 5040};
-    double below[kTaps], above[kTaps]; // products of (t + 3 - i) over the points on either side
-    below[0] = 1;
-    above[kTaps - 1] = 1;
-    for (int i = 1; i < kTaps; ++i) {
-        below[i] = below[i - 1] * (t + 3 - (i - 1));
-        above[kTaps - 1 - i] = above[kTaps - i] * (t + 3 - (kTaps - i));
+IBL_INLINE TwoPixels weightsAt(const Interpolant& taps, double t) {
+    const TwoPixels s = TwoPixels{} + static_cast<float>(2 * t - 1);
+    TwoPixels weights = {};
+    for (int n = 0; n < Interpolant::kTerms; ++n) {
+        TwoPixels term;
+        __builtin_memcpy(&term, taps.terms[n].data(), sizeof term);
+        weights = weights * s + term;
     }
-    for (int i = 0; i < kTaps; ++i)
-        weights[i] = float(below[i] * above[i] * kInverse[i]);
+    return weights;
+}
+
+IBL_INLINE Pixel sampleAt(const SmoothField& field, const Interpolant& taps, double u, double v) {
+    const std::size_t row = field.rowFloats();
+    const double x = u * field.columns, y = v * field.rings - 0.5;
+    const int column = static_cast<int>(std::floor(x)), ring = static_cast<int>(std::floor(y));
+    const TwoPixels wx = weightsAt(taps, x - column), wy = weightsAt(taps, y - ring);
+    const TwoPixels across[kTaps / 2] = {__builtin_shufflevector(wx, wx, 0, 0, 0, 0, 1, 1, 1, 1),
+                                         __builtin_shufflevector(wx, wx, 2, 2, 2, 2, 3, 3, 3, 3),
+                                         __builtin_shufflevector(wx, wx, 4, 4, 4, 4, 5, 5, 5, 5),
+                                         __builtin_shufflevector(wx, wx, 6, 6, 6, 6, 7, 7, 7, 7)};
+    // Tap 0 is sample (ring - 3, column - 3), with the margin (ring + 1, column + 1); u = 1 is
+    // column `columns`, whose last tap is columns + 4 and so is taken as column 0.
+    const int start = (column >= field.columns ? column - field.columns : column) + 1;
+    const float* tap = field.samples.data() + static_cast<std::size_t>(ring + 1) * row +
+                       static_cast<std::size_t>(start) * 4;
+    TwoPixels sum = {};
+    for (int j = 0; j < kTaps; ++j, tap += row) {
+        TwoPixels line = {};
+        for (int k = 0; k < kTaps / 2; ++k) {
+            TwoPixels pixels;
+            __builtin_memcpy(&pixels, tap + 8 * k, sizeof pixels);
+            line += across[k] * pixels;
+        }
+        sum += wy[j] * line;
+    }
+    return __builtin_shufflevector(sum, sum, 0, 1, 2, 3) +
+           __builtin_shufflevector(sum, sum, 4, 5, 6, 7);
 }
 
 } // namespace
@@ -104,73 +207,60 @@ IBL_INLINE void lagrangeWeights(double t, float* weights) {
 SmoothField synthesise(const Harmonics& harmonics, const std::vector<double>& scale, int degree,
                        int threads) {
     SmoothField field;
-    const int wanted = static_cast<int>(std::ceil(0.5 * kSamplesPerWavelength * (degree + 1)));
-    field.rings = std::max(kRingsAtOnce, ringsFor(wanted));
+    field.rings = gridRings(degree);
     field.columns = 2 * field.rings;
-    const std::vector<double> spectra =
-        synthesiseRingSpectra(harmonics, scale, degree, field.rings, threads);
+    const std::vector<double> gain = gains(degree, field.columns, true);
+    const LaneVector<double> spectra =
+        synthesiseRingSpectra(harmonics, scale, degree, field.rings, gain, threads);
     const std::size_t row = field.rowFloats();
     field.samples.resize(row * (field.rings + 2 * SmoothField::kMargin));
-    const FftPlan plan = makeFftPlan(field.columns);
-    parallelFor(field.rings / kRingsAtOnce, threads, [&](std::size_t block) {
-        const int first = static_cast<int>(block) * kRingsAtOnce;
-        LaneVector<ComplexLanes> data(field.columns), work(fftWorkspace(plan));
-        for (int channel = 0; channel < 3; ++channel) {
-            loadRing(spectra, degree, field.rings, first, channel, field.columns, data.data());
-            fft(plan, data.data(), work.data());
-            for (int lane = 0; lane < kRingsAtOnce; ++lane) {
-                float* out = field.samples.data() + (first + lane + SmoothField::kMargin) * row +
-                             4 * SmoothField::kMargin + channel;
-                for (int i = 0; i < field.columns; ++i) {
-                    const ComplexLanes& value = data[i];
-                    out[4 * static_cast<std::ptrdiff_t>(i)] = static_cast<float>(
-                        lane < kLanes ? value.im[lane] : value.re[lane - kLanes]);
-                }
-            }
-        }
-    });
+    transformRings(spectra, gain, field.rings, threads,
+                   [&](int first, const ComplexLanes* const* channels) {
+                       float* out = field.samples.data() + (first + SmoothField::kMargin) * row +
+                                    4 * SmoothField::kMargin;
+                       storeRings(channels, field.columns, out, row);
+                   });
     fillMargins(field);
     return field;
 }
 
+std::vector<double> synthesiseGrid(const Harmonics& harmonics, const std::vector<double>& scale,
+                                   int degree, int rings, int threads) {
+    const int columns = 2 * rings;
+    const std::vector<double> gain = gains(degree, columns, false);
+    const LaneVector<double> spectra =
+        synthesiseRingSpectra(harmonics, scale, degree, rings, gain, threads);
+    std::vector<double> result(static_cast<std::size_t>(3) * rings * columns);
+    transformRings(spectra, gain, rings, threads,
+                   [&](int first, const ComplexLanes* const* channels) {
+                       for (int ring = 0; ring < kRingsAtOnce; ++ring) {
+                           double* out = result.data() +
+                                         static_cast<std::ptrdiff_t>(first + ring) * 3 * columns;
+                           const int lane = ring % kLanes;
+                           for (int i = 0; i < 3 * columns; ++i) {
+                               const ComplexLanes& value = channels[i % 3][i / 3];
+                               out[i] = ring < kLanes ? value.im[lane] : value.re[lane];
+                           }
+                       }
+                   });
+    return result;
+}
+
 double interpolationError(int l, int degree) {
-    // The remainder of 8-point interpolation midway between points, of a wave of k radians a sample
-    // in each of two directions: prod (i + 1/2)^2 k^8 / 8!, and never more than about 2.
-    const int rings =
-        std::max(kRingsAtOnce,
-                 ringsFor(static_cast<int>(std::ceil(0.5 * kSamplesPerWavelength * (degree + 1)))));
-    const double k = kPi * l / rings;
-    const double product = 0.5 * 1.5 * 2.5 * 3.5;
-    return std::min(2.0, 2 * product * product / 40320 * std::pow(k, 8));
+    // Error of one direction and of the other, as a part of the highest frequency.
+    const double part = kOversampling * l / gridRings(degree);
+    const int step =
+        std::min(Interpolant::kSteps, static_cast<int>(std::ceil(part * Interpolant::kSteps)));
+    return 2 * interpolant().error[step];
 }
 
 IBL_MULTIVERSION
 void sampleField(const SmoothField& field, const double* u, const double* v, int n, float* out) {
-    constexpr int kTaps = SmoothField::kTaps;
-    const std::size_t row = field.rowFloats();
+    const Interpolant& taps = interpolant();
     for (int i = 0; i < n; ++i) {
-        const double x = u[i] * field.columns, y = v[i] * field.rings - 0.5;
-        const int column = static_cast<int>(std::floor(x)), ring = static_cast<int>(std::floor(y));
-        float wx[kTaps], wy[kTaps];
-        lagrangeWeights(x - column, wx);
-        lagrangeWeights(y - ring, wy);
-        // Tap 0 is sample (ring - 3, column - 3), with the margin (ring + 1, column + 1); u = 1 is
-        // column `columns`, whose last tap is columns + 4 and so is taken as column 0.
-        const int start = (column >= field.columns ? column - field.columns : column) + 1;
-        const float* tap = field.samples.data() + static_cast<std::size_t>(ring + 1) * row +
-                           static_cast<std::size_t>(start) * 4;
-        Pixel sum = {};
-        for (int j = 0; j < kTaps; ++j, tap += row) {
-            Pixel line = {};
-            for (int k = 0; k < kTaps; ++k) {
-                Pixel p;
-                __builtin_memcpy(&p, tap + 4 * k, sizeof p);
-                line += wx[k] * p;
-            }
-            sum += wy[j] * line;
-        }
+        const Pixel value = sampleAt(field, taps, u[i], v[i]);
         for (int channel = 0; channel < 3; ++channel)
-            out[3 * i + channel] = sum[channel];
+            out[3 * i + channel] = value[channel];
     }
 }
 

@@ -1,6 +1,7 @@
 // From spherical-harmonic coefficients to texels.
 #pragma once
 
+#include "convolve/interpolant.h"
 #include "convolve/legendre.h"
 
 #include <cstddef>
@@ -8,22 +9,19 @@
 
 namespace ibl {
 
-/// A smooth field on the sphere, sampled on a lat-long grid finer than its band limit needs, to be
-/// read between the samples by 8-point Lagrange interpolation in each direction. The grid goes on
-/// past the poles and the seam, so that there is no border anywhere.
+/// A smooth field on the sphere, sampled on a lat-long grid of kOversampling times the least number
+/// of samples, to be read between them (interpolant.h; the window's transform is divided out, so
+/// the samples are not the field's values). The grid goes on past the poles and the seam, so that
+/// there is no border anywhere.
 struct SmoothField {
-    static constexpr int kTaps = 8;
-    static constexpr int kMargin = kTaps / 2;
+    static constexpr int kMargin = Interpolant::kTaps / 2;
 
-    int rings = 0;              ///< theta = pi (r + 0.5) / rings
-    int columns = 0;            ///< psi = 2 pi i / columns
-    std::vector<float> samples; ///< [rings + 2 margin][columns + 2 margin][4]
+    int rings = 0;             ///< theta = pi (r + 0.5) / rings
+    int columns = 0;           ///< psi = 2 pi i / columns
+    LaneVector<float> samples; ///< [rings + 2 margin][columns + 2 margin][4]
 
     std::size_t rowFloats() const { return 4 * (static_cast<std::size_t>(columns) + 2 * kMargin); }
 };
-
-/// How many samples stand on the shortest wavelength of the band limit.
-inline constexpr double kSamplesPerWavelength = 4;
 
 /// The field sum k_l f_lm Y_lm up to `degree` (<= harmonics.degree); `scale` holds k_l.
 SmoothField synthesise(const Harmonics& harmonics, const std::vector<double>& scale, int degree,
@@ -35,5 +33,20 @@ double interpolationError(int l, int degree);
 
 /// Values of the field at n lat-long points (u, v) in [0, 1]: out[3 i + channel].
 void sampleField(const SmoothField& field, const double* u, const double* v, int n, float* out);
+
+/// The same field at n lat-long points without a grid: a Legendre sum at each different |cos
+/// theta|, a Fourier sum at each point. Exact but for rounding. out[3 i + channel].
+void evaluateField(const Harmonics& harmonics, const std::vector<double>& scale, int degree,
+                   const double* u, const double* v, std::size_t n, int threads, double* out);
+
+/// Whether evaluateField takes less time than synthesise and sampleField, for the points of maps,
+/// which share many an |cos theta|.
+bool evaluationIsCheaper(int degree, std::size_t points);
+
+/// Samples of the field on `rings` rings (a multiple of 2 kLanes, more than degree) at theta = pi
+/// (r + 0.5) / rings and twice as many columns at psi = pi i / rings, in double, for tests and
+/// benchmarks: [ring][column][channel].
+std::vector<double> synthesiseGrid(const Harmonics& harmonics, const std::vector<double>& scale,
+                                   int degree, int rings, int threads);
 
 } // namespace ibl

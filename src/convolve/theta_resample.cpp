@@ -11,29 +11,81 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-int wrapped(int k, int n) {
-    return ((k % n) + n) % n;
+IBL_INLINE Lanes load(const double* p) {
+    return *reinterpret_cast<const Lanes*>(p);
+}
+IBL_INLINE void store(const Lanes& x, double* p) {
+    *reinterpret_cast<Lanes*>(p) = x;
 }
 
-/// A group's columns: those of even m and of odd m, lane by lane; absent ones are null.
-struct ColumnGroup {
-    const double* even_m[kLanes];
-    const double* odd_m[kLanes];
-};
-
-/// The great circle's values from the half circle's. Columns of even m go on past the pole with the
-/// sign `even_sign`, those of odd m with the opposite one.
-void unfold(const ColumnGroup& group, std::ptrdiff_t re, std::ptrdiff_t im, int n, double even_sign,
-            ComplexLanes* circle) {
+/// kLanes rings of the columns m = odd, odd + 2, ...: x[ring], a lane a column.
+IBL_INLINE void loadColumns(const double* columns, ColumnLayout from, int count, int odd,
+                            std::ptrdiff_t at, Lanes (&x)[kLanes]) {
     for (int lane = 0; lane < kLanes; ++lane) {
-        const double *a = group.even_m[lane], *b = group.odd_m[lane];
-        for (int r = 0; r < n; ++r) {
-            const double are = a ? a[re + r] : 0, aim = a ? a[im + r] : 0;
-            const double bre = b ? b[re + r] : 0, bim = b ? b[im + r] : 0;
-            circle[r].re[lane] = are + bre;
-            circle[r].im[lane] = aim + bim;
-            circle[2 * n - 1 - r].re[lane] = even_sign * (are - bre);
-            circle[2 * n - 1 - r].im[lane] = even_sign * (aim - bim);
+        const int m = 2 * lane + odd;
+        x[lane] = m < count ? load(columns + m * kParts * from.part + at) : Lanes{};
+    }
+    transpose(x);
+}
+
+/// The great circle's values from the half circle's, those of even and odd m together. Columns of
+/// even m go on past the pole with the sign `even_sign`, those of odd m with the opposite one.
+IBL_MULTIVERSION
+void unfold(const ThetaResample& plan, const double* columns, ColumnLayout from, int count,
+            int channel, double even_sign, ComplexLanes* circle) {
+    const int n = plan.in;
+    for (int block = 0; block * kLanes < n; ++block) {
+        const std::ptrdiff_t re = block * from.block + 2 * channel * from.part;
+        Lanes are[kLanes], aim[kLanes], bre[kLanes], bim[kLanes];
+        loadColumns(columns, from, count, 0, re, are);
+        loadColumns(columns, from, count, 0, re + from.part, aim);
+        loadColumns(columns, from, count, 1, re, bre);
+        loadColumns(columns, from, count, 1, re + from.part, bim);
+        for (int i = 0; i < std::min(kLanes, n - block * kLanes); ++i) {
+            const int r = block * kLanes + i;
+            circle[plan.forward.slot(r)] = {are[i] + bre[i], aim[i] + bim[i]};
+            circle[plan.forward.slot(2 * n - 1 - r)] = {even_sign * (are[i] - bre[i]),
+                                                        even_sign * (aim[i] - bim[i])};
+        }
+    }
+}
+
+/// The spectrum `from` k = -degree on, times the plan's factors, to where the inverse transform
+/// reads it; real and imaginary parts swapped, so that the forward transform is the inverse.
+IBL_MULTIVERSION
+void placeSpectrum(const ThetaResample& plan, const ComplexLanes* from, ComplexLanes* to) {
+    const int n = 2 * plan.out, d = plan.degree;
+    std::fill(to + d + 1, to + n - d, ComplexLanes{});
+    for (int k = -d; k <= d; ++k) {
+        const ComplexLanes& c = from[k + d];
+        const std::complex<double> f = plan.factors[k + d];
+        to[k < 0 ? k + n : k] = {c.re * f.imag() + c.im * f.real(),
+                                 c.re * f.real() - c.im * f.imag()};
+    }
+}
+
+/// The reverse of unfold, from swapped parts.
+IBL_MULTIVERSION
+void fold(const ThetaResample& plan, const ComplexLanes* circle, int channel, double even_sign,
+          int count, double* result, ColumnLayout to) {
+    for (int block = 0; block * kLanes < plan.out; ++block) {
+        const std::ptrdiff_t re = block * to.block + 2 * channel * to.part;
+        for (int odd = 0; odd < 2; ++odd) {
+            const double sign = odd ? -even_sign : even_sign;
+            Lanes x[kLanes], y[kLanes];
+            for (int i = 0; i < kLanes; ++i) {
+                const int r = block * kLanes + i;
+                const ComplexLanes &a = circle[r], &b = circle[2 * plan.out - 1 - r];
+                x[i] = 0.5 * (a.im + sign * b.im);
+                y[i] = 0.5 * (a.re + sign * b.re);
+            }
+            transpose(x);
+            transpose(y);
+            for (int lane = 0; lane < kLanes && 2 * lane + odd < count; ++lane) {
+                double* out = result + (2 * lane + odd) * kParts * to.part + re;
+                store(x[lane], out);
+                store(y[lane], out + to.part);
+            }
         }
     }
 }
@@ -41,7 +93,8 @@ void unfold(const ColumnGroup& group, std::ptrdiff_t re, std::ptrdiff_t im, int 
 } // namespace
 
 ThetaResample makeThetaResample(int in, int out, int degree, RingSource source) {
-    ThetaResample plan{in, out, degree, source, makeFftPlan(2 * in), makeFftPlan(2 * out), {}};
+    ThetaResample plan{in, out, degree, source, makePrunedFft(2 * in, degree), makeFftPlan(2 * out),
+                       {}};
     plan.factors.resize(static_cast<std::size_t>(2 * degree + 1));
     for (int k = -degree; k <= degree; ++k) {
         // Both grids start half a step from the pole.
@@ -53,46 +106,18 @@ ThetaResample makeThetaResample(int in, int out, int degree, RingSource source) 
     return plan;
 }
 
-void thetaResample(const ThetaResample& plan, const double* columns, int count, double* result) {
-    const std::ptrdiff_t column = static_cast<std::ptrdiff_t>(kParts) * plan.in;
-    const std::ptrdiff_t out_column = static_cast<std::ptrdiff_t>(kParts) * plan.out;
-    ColumnGroup group;
-    for (int lane = 0; lane < kLanes; ++lane) {
-        const int m = 2 * lane;
-        group.even_m[lane] = m < count ? columns + m * column : nullptr;
-        group.odd_m[lane] = m + 1 < count ? columns + (m + 1) * column : nullptr;
-    }
+void thetaResample(const ThetaResample& plan, const double* columns, ColumnLayout from, int count,
+                   double* result, ColumnLayout to) {
     const double even_sign = plan.source == RingSource::samples ? 1 : -1;
-    const int n = 2 * plan.in, n_out = 2 * plan.out;
-    LaneVector<ComplexLanes> circle(n), resampled(n_out),
-        work(std::max(fftWorkspace(plan.forward), fftWorkspace(plan.backward)));
+    const std::size_t most = static_cast<std::size_t>(2 * std::max(plan.in, plan.out));
+    LaneVector<ComplexLanes> circle(most), spectrum(plan.factors.size()),
+        work(std::max(fftWorkspace(plan.forward.part), fftWorkspace(plan.backward)));
     for (int channel = 0; channel < 3; ++channel) {
-        const std::ptrdiff_t re = 2 * channel, im = re + 1;
-        unfold(group, re * plan.in, im * plan.in, plan.in, even_sign, circle.data());
-        fft(plan.forward, circle.data(), work.data());
-        std::fill(resampled.begin(), resampled.end(), ComplexLanes{});
-        for (int k = -plan.degree; k <= plan.degree; ++k) {
-            const ComplexLanes& c = circle[wrapped(k, n)];
-            const std::complex<double> f = plan.factors[k + plan.degree];
-            ComplexLanes& to = resampled[wrapped(k, n_out)];
-            // Swapped, so that the forward transform is the inverse.
-            to.im += c.re * f.real() - c.im * f.imag();
-            to.re += c.re * f.imag() + c.im * f.real();
-        }
-        fft(plan.backward, resampled.data(), work.data());
-        for (int lane = 0; lane < kLanes; ++lane) {
-            const int m = 2 * lane;
-            for (int odd = 0; odd < 2 && m + odd < count; ++odd) {
-                double* out_re = result + (m + odd) * out_column + re * plan.out;
-                double* out_im = result + (m + odd) * out_column + im * plan.out;
-                const double sign = odd ? -even_sign : even_sign;
-                for (int r = 0; r < plan.out; ++r) {
-                    const ComplexLanes &a = resampled[r], &b = resampled[n_out - 1 - r];
-                    out_re[r] = 0.5 * (a.im[lane] + sign * b.im[lane]);
-                    out_im[r] = 0.5 * (a.re[lane] + sign * b.re[lane]);
-                }
-            }
-        }
+        unfold(plan, columns, from, count, channel, even_sign, circle.data());
+        prunedFft(plan.forward, circle.data(), work.data(), spectrum.data());
+        placeSpectrum(plan, spectrum.data(), circle.data());
+        fft(plan.backward, circle.data(), work.data());
+        fold(plan, circle.data(), channel, even_sign, count, result, to);
     }
 }
 

@@ -20,6 +20,7 @@
 #pragma once
 
 #include "convolve/fft.h"
+#include "convolve/legendre.h"
 
 namespace ibl {
 
@@ -33,17 +34,36 @@ struct ThetaResample {
     int out = 0;
     int degree = 0;
     RingSource source = RingSource::samples;
-    FftPlan forward;
+    PrunedFft forward;
     FftPlan backward;
     std::vector<std::complex<double>> factors; ///< of k = -degree .. degree
 };
 
 /// From `in` rings to `out` rings (theta = pi (r + 0.5) / n), keeping Fourier degrees up to
-/// `degree` (less than `in` for samples).
+/// `degree` (less than `in` for samples). 2 `out` > 2 `degree`; `out` is a multiple of kLanes.
 ThetaResample makeThetaResample(int in, int out, int degree, RingSource source);
 
-/// Resamples `count` <= 2 kLanes columns of consecutive m, the first of them even, laid out
-/// [m][part][in], into `result`, [m][part][out].
-void thetaResample(const ThetaResample& plan, const double* columns, int count, double* result);
+/// Where the values g_m of kLanes successive rings stand: block b of rings of part p of the i-th
+/// column at b * block + (i * kParts + p) * part.
+struct ColumnLayout {
+    std::ptrdiff_t part;
+    std::ptrdiff_t block;
+};
+
+/// Columns one after another, [m][part][ring].
+inline ColumnLayout columnsApart(int rings) {
+    return {rings, kLanes};
+}
+
+/// All columns' values on kLanes rings together, [ring block][m][part][lane].
+inline ColumnLayout columnsTogether(int columns) {
+    return {kLanes, static_cast<std::ptrdiff_t>(kLanes) * kParts * columns};
+}
+
+inline constexpr int kColumnsAtOnce = 2 * kLanes;
+
+/// Resamples `count` <= kColumnsAtOnce columns of consecutive m, the first of them even.
+void thetaResample(const ThetaResample& plan, const double* columns, ColumnLayout from, int count,
+                   double* result, ColumnLayout to);
 
 } // namespace ibl
