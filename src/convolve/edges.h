@@ -131,4 +131,27 @@ double meridianIntegral(const Q& q, const Disc& disc, const Axis& axis, double o
     });
 }
 
+/// A lat-long rectangle: colatitudes and azimuths psi.
+struct Rectangle {
+    double top, bottom;
+    double west, east;
+};
+
+/// Mass over the rectangle of a kernel of that total mass, Q(h) = mass within t less the total.
+template <class Q>
+double rectangleMass(const Q& q, double total, const Disc& disc, const Axis& axis,
+                     const Rectangle& r) {
+    // The rectangle's azimuths about the axis's, as near as can be.
+    constexpr double kTurn = 2 * std::numbers::pi;
+    const double turn = kTurn * std::round((0.5 * (r.west + r.east) - axis.psi) / kTurn);
+    const double west = r.west - turn - axis.psi, east = r.east - turn - axis.psi;
+    const bool inside = axis.theta > r.top && axis.theta < r.bottom && west < 0 && east > 0;
+    const double ring = parallelIntegral(q, disc, axis, r.bottom, west, east) -
+                        parallelIntegral(q, disc, axis, r.top, west, east);
+    // Counter-clockwise: the east side northwards, the west side southwards.
+    const double sides = meridianIntegral(q, disc, axis, east, r.top, r.bottom) -
+                         meridianIntegral(q, disc, axis, west, r.top, r.bottom);
+    return (inside ? total : 0) + (ring + sides) / kTurn;
+}
+
 } // namespace ibl

@@ -1,9 +1,11 @@
 #include "convolve/narrow.h"
 
+#include "convolve/texel_mean.h"
 #include "panorama/conventions.h"
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 
 namespace ibl {
 namespace {
@@ -86,92 +88,108 @@ NarrowLobe makeNarrowLobe(const std::vector<double>& k, int degree, const Spectr
     return narrow;
 }
 
+// The mass of the band-limited part within t, by int P_l = (P_(l-1) - P_(l+1)) / (2l + 1), is
+//
+//     M(t) = k_0 (1 - cos t) / 2 + sum over l >= 1 of k_l (P_(l-1) - P_(l+1))(cos t) / 2.
 NarrowPeaks makeNarrowPeaks(const std::vector<Peak>& peaks, int width, int height, const Lobe& lobe,
                             const NarrowLobe& narrow) {
     const int degree = static_cast<int>(narrow.k.size()) - 1;
-    NarrowPeaks result{makePeakSum(peaks, width, height, lobe), {}, {}, 0, 0, narrow.area};
-    for (std::size_t p = 0; p < peaks.size(); ++p) {
-        // Gauss points: about pi a wave, and some.
-        const double waves = result.sum.rectangles[p].size * degree / (2 * kPi);
-        result.points.push_back(pixelPoints(width, height, peaks[p].column, peaks[p].row,
-                                            5 + static_cast<int>(std::ceil(kPi * waves))));
-    }
+    NarrowPeaks result{makePeakSum(peaks, width, height, lobe), narrow.area, 0, 0, {}, 0};
     // The taper's width in degrees, 0.05 B, makes the difference fall as exp(-(0.05 B t)^2 / 2).
-    result.reach = std::min(kPi, 110.0 / degree);
-    result.band_step = 1.0 / (16 * degree);
-    const int count = static_cast<int>(result.reach / result.band_step) + 4;
-    result.band.resize(static_cast<std::size_t>(count));
+    result.reach = std::min(0.5 * kPi, 110.0 / degree);
+    result.variation = 2.0 / degree;
+    result.step = 1.0 / (16 * degree);
+    const int count = static_cast<int>(result.reach / result.step) + 3;
+    result.beyond.resize(static_cast<std::size_t>(count));
     for (int i = 0; i < count; ++i) {
-        // sum over l of (2l + 1) / (4 pi) k_l P_l(cos t)
-        const double x = std::cos(i * result.band_step);
-        double previous = 0, current = 1, sum = 0;
-        for (int l = 0; l <= degree; ++l) {
-            sum += (2 * l + 1) / (4 * kPi) * narrow.k[static_cast<std::size_t>(l)] * current;
+        const double chord = i * result.step, x = 1 - 0.5 * chord * chord;
+        double previous = 1, current = x, mass = narrow.k[0] * (1 - x) / 2;
+        for (int l = 1; l <= degree; ++l) {
             const double next = ((2 * l + 1) * x * current - l * previous) / (l + 1);
+            mass += 0.5 * narrow.k[static_cast<std::size_t>(l)] * (previous - next);
             previous = current;
             current = next;
         }
-        result.band[static_cast<std::size_t>(i)] = sum;
+        result.beyond[static_cast<std::size_t>(i)] = narrow.k[0] - mass;
     }
     return result;
 }
 
 namespace {
 
-/// The band-limited part of the lobe at the angle t from its axis, by cubic interpolation.
-double bandValue(const NarrowPeaks& peaks, double t) {
-    const double x = t / peaks.band_step;
-    const std::size_t last = peaks.band.size() - 3;
-    const std::size_t i = std::clamp<std::size_t>(static_cast<std::size_t>(x), 1, last);
+/// The band-limited part's mass beyond a chord, by cubic interpolation; it is even in the chord.
+double bandBeyond(const NarrowPeaks& peaks, double chord) {
+    const double x = chord / peaks.step;
+    const std::size_t i = std::min(static_cast<std::size_t>(x), peaks.beyond.size() - 3);
     const double f = x - static_cast<double>(i);
-    const double* p = &peaks.band[i - 1];
-    return p[0] * -f * (f - 1) * (f - 2) / 6 + p[1] * (f + 1) * (f - 1) * (f - 2) / 2 -
-           p[2] * (f + 1) * f * (f - 2) / 2 + p[3] * (f + 1) * f * (f - 1) / 6;
-}
-
-/// Mass of the band-limited part of the lobe over peak p's pixel.
-double bandMass(const NarrowPeaks& peaks, std::size_t p, const V3d& x) {
-    const PixelPoints& points = peaks.points[p];
-    double mass = 0;
-    for (std::size_t i = 0; i < points.weights.size(); ++i) {
-        const double chord = (x - points.directions[i]).length();
-        mass += points.weights[i] * bandValue(peaks, 2 * std::asin(std::min(1.0, 0.5 * chord)));
-    }
-    return mass;
+    const double* p = &peaks.beyond[i];
+    const double before = i == 0 ? p[1] : p[-1];
+    return before * -f * (f - 1) * (f - 2) / 6 + p[0] * (f + 1) * (f - 1) * (f - 2) / 2 -
+           p[1] * (f + 1) * f * (f - 2) / 2 + p[2] * (f + 1) * f * (f - 1) / 6;
 }
 
 } // namespace
 
-void addNarrowPeaks(const NarrowPeaks& peaks, int width, int height, double texel,
-                    const Footprint& footprint, const RowPoints& points,
-                    const std::vector<double>& area_row, std::vector<double>& texels) {
+namespace {
+
+/// Mean over a texel's points of a kernel's mass over a peak's pixel; Q and total as for
+/// rectangleMass.
+template <class Q>
+double meanAtPoints(const Q& q, double total, const Disc& disc, const Rectangle& pixel,
+                    const RowPoints& points, std::size_t texel) {
+    const std::size_t first = texel * static_cast<std::size_t>(points.per_texel);
+    double mean = 0;
+    for (std::size_t i = first; i < first + points.per_texel; ++i) {
+        const Axis axis = makeAxis(points.u[i], points.v[i]);
+        mean += points.share[i] * rectangleMass(q, total, disc, axis, pixel);
+    }
+    return mean;
+}
+
+/// Whether the texel reaches so near to the pixel that the lobe may fall between its points.
+bool isNear(const std::array<V3d, 4>& corners, const PeakRectangle& r) {
+    const V3d pixel = r.coarse.directions[0];
+    const double size = (corners[0] - corners[2]).length();
+    const auto chord = [&](const V3d& c) { return (c - pixel).length(); };
+    return std::ranges::min(corners | std::views::transform(chord)) < 2 * (size + r.size) &&
+           std::ranges::max(corners | std::views::transform(chord)) < 1;
+}
+
+} // namespace
+
+void addNarrowPeaks(const NarrowPeaks& peaks, const MapRow& row, const Footprint& footprint,
+                    const RowPoints& points, const std::vector<double>& area_row,
+                    std::vector<double>& texels) {
     const PeakSum& sum = peaks.sum;
-    const double spacing = footprint.scale * texel / std::sqrt(points.per_texel);
-    const double inner_s = 2 * sum.width < spacing ? std::sin(0.25 * spacing) : 0;
-    const double inner = inner_s > 0 ? 1 - sum.mass_beyond(inner_s * inner_s) : 0;
+    const auto band = [&](double h) {
+        const double chord = 2 * std::sqrt(h);
+        return chord < peaks.reach ? -bandBeyond(peaks, chord) : -sum.mass_beyond(h);
+    };
+    const auto difference = [&](double h) { return -band(h) - sum.mass_beyond(h); };
     for (std::size_t t = 0; t < points.column.size(); ++t) {
         for (int c = 0; c < 3; ++c)
-            texels[3 * t + c] += (inner - peaks.area) * area_row[3 * t + c];
-        const std::size_t first = t * static_cast<std::size_t>(points.per_texel);
+            texels[3 * t + c] -= peaks.area * area_row[3 * t + c];
+        const std::array<V3d, 4> corners =
+            texelCorners(row.layout, row.width, row.height, points.column[t], row.y, 1);
         for (std::size_t p = 0; p < sum.peaks.size(); ++p) {
-            const double reach = peaks.reach + sum.rectangles[p].size + texel;
-            const Axis centre = makeAxis(points.u[first], points.v[first]);
-            if ((polarDirection(centre.theta, centre.psi) - peaks.points[p].directions[0])
-                    .length() > reach)
-                continue;
-            const Peak& peak = sum.peaks[p];
-            double mean = 0;
-            for (std::size_t i = first; i < first + points.per_texel; ++i) {
-                const double u = points.u[i], v = points.v[i];
-                const Axis axis = makeAxis(u, v);
-                const V3d x = polarDirection(axis.theta, axis.psi);
-                const bool own = static_cast<int>(u * width) % width == peak.column &&
-                                 std::min(static_cast<int>(v * height), height - 1) == peak.row;
-                mean += points.share[i] *
-                        (peakMass(sum, p, axis, x) - bandMass(peaks, p, x) - (own ? inner : 0));
+            const PeakRectangle& r = sum.rectangles[p];
+            const double size = (corners[0] - corners[2]).length();
+            const double far = peaks.reach + 2 * (r.size + size);
+            if ((corners[0] - r.coarse.directions[0]).length() > far) continue;
+            double mean;
+            if (footprint.scale > 0 && isNear(corners, r)) {
+                const Quad texel =
+                    quadInPlane(r.edges, texelCorners(row.layout, row.width, row.height,
+                                                      points.column[t], row.y, footprint.scale));
+                mean = texelMean(sum.mass_beyond, texel, pixelQuad(r.edges)) -
+                       meanAtPoints(band, 1 - peaks.area, {0.5 * kPi, peaks.variation}, r.edges,
+                                    points, t);
+            } else {
+                mean = meanAtPoints(difference, peaks.area, {peaks.reach, peaks.variation}, r.edges,
+                                    points, t);
             }
             for (int c = 0; c < 3; ++c)
-                texels[3 * t + c] += mean * peak.excess[c];
+                texels[3 * t + c] += mean * sum.peaks[p].excess[c];
         }
     }
 }

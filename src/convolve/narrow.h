@@ -50,25 +50,34 @@ struct NarrowLobe {
 NarrowLobe makeNarrowLobe(const std::vector<double>& k, int degree, const Spectrum& spectrum,
                           double footprint);
 
-/// What the brightest pixels add beyond m A and the harmonics.
+/// What the brightest pixels add beyond m A and the harmonics: their convolution with the lobe less
+/// its band-limited part, which is a narrow kernel of the mass m.
 struct NarrowPeaks {
     PeakSum sum;
-    std::vector<PixelPoints> points; ///< in each peak's pixel, dense enough for degree B
-    std::vector<double> band;        ///< of the lobe up to B: values at t = i * band_step
-    double band_step = 0;
-    double reach = 0; ///< radians from a peak beyond which there is nothing to add
-    double area = 0;  ///< m
+    double area = 0;            ///< m
+    double reach = 0;           ///< angle within which that kernel's mass lies
+    double variation = 0;       ///< angle over which its band-limited part varies
+    std::vector<double> beyond; ///< that part's mass beyond chords of i * step
+    double step = 0;
 };
 
 /// `width` x `height` is the probe's extent.
 NarrowPeaks makeNarrowPeaks(const std::vector<Peak>& peaks, int width, int height, const Lobe& lobe,
                             const NarrowLobe& narrow);
 
-/// Adds to one row of a map of texels `texel` radians wide. Of the lobe's innermost part, which
-/// falls between a texel's points, the mean is that of the area filter: `area_row` is what the
-/// peaks add to the area-filtered map's row.
-void addNarrowPeaks(const NarrowPeaks& peaks, int width, int height, double texel,
-                    const Footprint& footprint, const RowPoints& points,
-                    const std::vector<double>& area_row, std::vector<double>& texels);
+/// A row of a map.
+struct MapRow {
+    Layout layout;
+    int width;
+    int height; ///< of the map
+    int y;
+};
+
+/// Adds to one row of a map, `texels`, what the peaks add to it; to the area-filtered map's row
+/// they add `area_row`. Near a peak the mean over the texel is that of texel_mean.h, farther away
+/// that over the texel's points.
+void addNarrowPeaks(const NarrowPeaks& peaks, const MapRow& row, const Footprint& footprint,
+                    const RowPoints& points, const std::vector<double>& area_row,
+                    std::vector<double>& texels);
 
 } // namespace ibl

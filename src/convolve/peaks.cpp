@@ -17,21 +17,7 @@ double magnitude(const float* pixel, double scale) {
                              std::abs(double{pixel[2]})});
 }
 
-/// The lobe's normalised mass over the rectangle, by its edges.
-double massByEdges(const LobeMassBeyond& mass_beyond, const Axis& axis, const PeakRectangle& r) {
-    const auto q = [&](double h) { return -mass_beyond(h); };
-    // The rectangle's azimuths about the axis's, as near as can be.
-    const double turn = 2 * kPi * std::round((0.5 * (r.west + r.east) - axis.psi) / (2 * kPi));
-    const double west = r.west - turn - axis.psi, east = r.east - turn - axis.psi;
-    const bool inside = axis.theta > r.top && axis.theta < r.bottom && west < 0 && east > 0;
-    constexpr Disc disc{0.5 * kPi, 0.2};
-    const double ring = parallelIntegral(q, disc, axis, r.bottom, west, east) -
-                        parallelIntegral(q, disc, axis, r.top, west, east);
-    // Counter-clockwise: the east side northwards, the west side southwards.
-    const double sides = meridianIntegral(q, disc, axis, east, r.top, r.bottom) -
-                         meridianIntegral(q, disc, axis, west, r.top, r.bottom);
-    return (inside ? 1 : 0) + (ring + sides) / (2 * kPi);
-}
+constexpr Disc kHemisphere{0.5 * kPi, 0.2};
 
 /// Angle over which the lobe changes by its own size, t from its axis: as far as its horizon or its
 /// poles in the complex plane.
@@ -64,12 +50,30 @@ void addPixel(ProbeStatistics& part, const Candidate& pixel) {
     std::ranges::push_heap(best, brighter);
 }
 
+/// n x n points over a pixel, Gauss's in (psi, theta): in cos theta the pixels at the poles would
+/// not be smooth.
+PixelPoints pixelPoints(int width, int height, int column, int row, int n) {
+    const GaussRule& rule = gaussRule(n);
+    PixelPoints points;
+    double total = 0;
+    for (int b = 0; b < n; ++b) {
+        const double theta = kPi * (row + 0.5 + 0.5 * rule.nodes[b]) / height;
+        for (int a = 0; a < n; ++a) {
+            const double psi = 2 * kPi * (column + 0.5 + 0.5 * rule.nodes[a]) / width;
+            points.directions.push_back(polarDirection(theta, psi));
+            points.weights.push_back(rule.weights[a] * rule.weights[b] * std::sin(theta));
+            total += points.weights.back();
+        }
+    }
+    for (double& w : points.weights)
+        w *= latlongPixelSolidAngle(width, height, row) / total;
+    return points;
+}
+
 PeakRectangle rectangleOf(const Peak& peak, int width, int height) {
     PeakRectangle r;
-    r.top = kPi * peak.row / height;
-    r.bottom = kPi * (peak.row + 1) / height;
-    r.west = 2 * kPi * peak.column / width;
-    r.east = 2 * kPi * (peak.column + 1) / width;
+    r.edges = {kPi * peak.row / height, kPi * (peak.row + 1) / height,
+               2 * kPi * peak.column / width, 2 * kPi * (peak.column + 1) / width};
     r.size = std::max(kPi / height, 2 * kPi / width * std::sin(kPi * (peak.row + 0.5) / height));
     r.coarse = pixelPoints(width, height, peak.column, peak.row, 2);
     r.fine = pixelPoints(width, height, peak.column, peak.row, 4);
@@ -141,25 +145,6 @@ V3d polarDirection(double theta, double psi) {
     return {s * std::cos(psi), s * std::sin(psi), std::cos(theta)};
 }
 
-// Points are Gauss's in (psi, theta): in cos theta the pixels at the poles would not be smooth.
-PixelPoints pixelPoints(int width, int height, int column, int row, int n) {
-    const GaussRule& rule = gaussRule(n);
-    PixelPoints points;
-    double total = 0;
-    for (int b = 0; b < n; ++b) {
-        const double theta = kPi * (row + 0.5 + 0.5 * rule.nodes[b]) / height;
-        for (int a = 0; a < n; ++a) {
-            const double psi = 2 * kPi * (column + 0.5 + 0.5 * rule.nodes[a]) / width;
-            points.directions.push_back(polarDirection(theta, psi));
-            points.weights.push_back(rule.weights[a] * rule.weights[b] * std::sin(theta));
-            total += points.weights.back();
-        }
-    }
-    for (double& w : points.weights)
-        w *= latlongPixelSolidAngle(width, height, row) / total;
-    return points;
-}
-
 PeakSum makePeakSum(const std::vector<Peak>& peaks, int width, int height, const Lobe& lobe) {
     PeakSum sum{peaks, {}, lobe, LobeMassBeyond(lobe), lobeWidth(lobe), 1 / lobeIntegral(lobe)};
     for (const Peak& peak : peaks)
@@ -174,7 +159,10 @@ double peakMass(const PeakSum& sum, std::size_t p, const Axis& axis, const V3d& 
     const double t = std::acos(std::clamp(x.dot(r.coarse.directions[0]), -1.0, 1.0));
     if (t > 0.5 * kPi + 2 * r.size) return 0;
     const double scale = scaleAt(sum.lobe, sum.width, t);
-    if (r.size > 0.5 * scale) return massByEdges(sum.mass_beyond, axis, r);
+    if (r.size > 0.5 * scale) {
+        const auto q = [&](double h) { return -sum.mass_beyond(h); };
+        return rectangleMass(q, 1, kHemisphere, axis, r.edges);
+    }
     const PixelPoints& points = r.size > 0.1 * scale ? r.fine : r.coarse;
     double mass = 0;
     for (std::size_t i = 0; i < points.weights.size(); ++i) {

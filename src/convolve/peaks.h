@@ -52,23 +52,19 @@ struct Peak {
 
 std::vector<Peak> splitPeaks(const ProbeStatistics& statistics, double threshold);
 
-/// Gauss points over a pixel, in its own frame: the pole along +Z.
+/// The direction of colatitude theta and azimuth psi, with the pole along +Z.
+V3d polarDirection(double theta, double psi);
+
+/// Gauss points over a pixel as polar directions.
 struct PixelPoints {
     std::vector<V3d> directions;
     std::vector<double> weights; ///< summing to the pixel's solid angle
 };
 
-/// n x n points over pixel (column, row) of a probe of that extent.
-PixelPoints pixelPoints(int width, int height, int column, int row, int n);
-
-/// The direction of colatitude theta and azimuth psi in that frame.
-V3d polarDirection(double theta, double psi);
-
 /// Where a peak lies, and points in it.
 struct PeakRectangle {
-    double top, bottom; ///< colatitudes
-    double west, east;  ///< azimuths psi
-    double size;        ///< the longer edge, radians
+    Rectangle edges;
+    double size; ///< the longer edge, radians
     PixelPoints coarse, fine;
 };
 

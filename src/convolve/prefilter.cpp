@@ -112,8 +112,9 @@ void addNarrowRow(const Probe& probe, const PrefilterRequest& request, const Foo
         }
     }
     if (!any_peaks) return;
-    addNarrowPeaks(parts.peaks, probe.image.width, probe.image.height, texelAngle(request),
-                   footprint, points, of_peaks, texels);
+    const Image& map = parts.area;
+    addNarrowPeaks(parts.peaks, {request.layout, map.width, map.height, y}, footprint, points,
+                   of_peaks, texels);
 }
 
 /// Fills row y of the map.
@@ -313,7 +314,9 @@ PrefilterResult byArea(const Engine& engine, const PrefilterRequest& request, co
     const SmoothField field = synthesise(*engine.whole, narrow.k, lobe.degree, threads);
     result.seconds_synthesis = watch.seconds();
     const auto areaOf = [&](const Image& image) {
-        return resample({Layout::latlong, image}, request.layout, request.size, threads).image;
+        return resample({Layout::latlong, image}, request.layout, request.size, threads,
+                        Enlarging::hold)
+            .image;
     };
     NarrowParts of_narrow{
         narrow.area,

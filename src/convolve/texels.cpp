@@ -1,6 +1,7 @@
 #include "convolve/texels.h"
 
 #include "convolve/gauss.h"
+#include "convolve/peaks.h"
 #include "panorama/conventions.h"
 #include "panorama/layouts.h"
 
@@ -81,6 +82,19 @@ double texelCount(const PrefilterRequest& request) {
     const double n = request.size;
     const bool cube = isCubeFamily(request.layout) || request.layout == Layout::exrCube;
     return cube ? 6 * n * n : 2 * n * n;
+}
+
+std::array<V3d, 4> texelCorners(Layout layout, int width, int height, int x, int y, double scale) {
+    std::array<V3d, 4> corners;
+    for (int i = 0; i < 4; ++i) {
+        const double dx = i == 1 || i == 2 ? 0.5 : -0.5, dy = i >= 2 ? 0.5 : -0.5;
+        const V3d d =
+            texelDirection(layout, width, height, x + 0.5 + scale * dx, y + 0.5 + scale * dy)
+                .value();
+        const V2d p = latlongPoint(d);
+        corners[static_cast<std::size_t>(i)] = polarDirection(kPi * p.y, 2 * kPi * p.x);
+    }
+    return corners;
 }
 
 RowPoints rowPoints(Layout layout, int width, int height, int y, const Footprint& footprint) {

@@ -3,7 +3,9 @@
 
 #include "convolve/lobe.h"
 #include "convolve/prefilter.h"
+#include "panorama/conventions.h"
 
+#include <array>
 #include <vector>
 
 namespace ibl {
@@ -39,6 +41,10 @@ struct RowPoints {
     std::vector<double> v;
     std::vector<double> share; ///< of each point in its texel's mean; they sum to 1
 };
+
+/// Corners of the texel shrunk to `scale` of its extent about its centre, as polar directions
+/// (peaks.h), in order around.
+std::array<V3d, 4> texelCorners(Layout layout, int width, int height, int x, int y, double scale);
 
 /// Row y of a map of that layout and extent.
 RowPoints rowPoints(Layout layout, int width, int height, int y, const Footprint& footprint);

@@ -66,11 +66,11 @@ void cornerRow(const std::vector<Segment>& segments, double t, std::vector<doubl
 
 } // namespace
 
-void cubeToCube(const Panorama& source, Panorama& result, int threads) {
+void cubeToCube(const Panorama& source, Panorama& result, Enlarging enlarging, int threads) {
     const CubePlacement from(source), to(result);
     const bool from_border = hasBorderRule(source.layout), to_border = hasBorderRule(result.layout);
-    const double share =
-        areaShare(centrePitch(2, to.edge, to_border) / centrePitch(2, from.edge, from_border));
+    const double share = areaShare(
+        centrePitch(2, to.edge, to_border) / centrePitch(2, from.edge, from_border), enlarging);
     const std::vector<Segment> segments =
         commonSegments(cubeGrid(from.edge, from_border).lines, cubeGrid(to.edge, to_border).lines);
     const Sampler sampler = makeSampler(source);
@@ -174,7 +174,7 @@ void mergeBorder(Panorama& panorama) {
     forEachOnEdge([](const Meeting& m, float* p) { setPixel(p, m.sum / m.count); });
 }
 
-Panorama resample(const Panorama& source, Layout to, int size, int threads) {
+Panorama resample(const Panorama& source, Layout to, int size, int threads, Enlarging enlarging) {
     // What images are read up to, so that every result can be an input.
     constexpr int kLargestEdge = 65536;
     constexpr long long kMostPixels = 1LL << 30;
@@ -202,13 +202,13 @@ Panorama resample(const Panorama& source, Layout to, int size, int threads) {
         *layoutSize(source.layout, source.image.width, source.image.height) == size) {
         permute(source, result, threads);
     } else if (from_cube && to_cube) {
-        cubeToCube(source, result, threads);
+        cubeToCube(source, result, enlarging, threads);
     } else if (from_cube) {
-        cubeToLatlong(source, result, threads);
+        cubeToLatlong(source, result, enlarging, threads);
     } else if (to_cube) {
-        latlongToCube(source, result, threads);
+        latlongToCube(source, result, enlarging, threads);
     } else {
-        latlongToLatlong(source, result, threads);
+        latlongToLatlong(source, result, enlarging, threads);
     }
     if (hasBorderRule(to)) mergeBorder(result);
     return result;

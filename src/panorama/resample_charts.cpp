@@ -66,14 +66,14 @@ FaceSums roomForFace(int face, const LatlongGrid& grid) {
 
 } // namespace
 
-void latlongToCube(const Panorama& source, Panorama& result, int threads) {
+void latlongToCube(const Panorama& source, Panorama& result, Enlarging enlarging, int threads) {
     const bool from_border = hasBorderRule(source.layout), to_border = hasBorderRule(result.layout);
     const CubePlacement place(result);
     const int edge = place.edge;
     const double pitch_on_face = centrePitch(2, edge, to_border);
     const double row_pitch = centrePitch(kPi, source.image.height, from_border);
     CubeLatlongOverlaps overlaps;
-    if (areaShare(pitch_on_face / row_pitch) > 0) {
+    if (areaShare(pitch_on_face / row_pitch, enlarging) > 0) {
         overlaps = cubeLatlongOverlaps(
             cubeGrid(edge, to_border),
             latlongGrid(source.image.width, source.image.height, from_border), threads);
@@ -87,7 +87,7 @@ void latlongToCube(const Panorama& source, Panorama& result, int threads) {
         for (int i = 0; i < edge; ++i) {
             const V3d direction = cubeDirection({face, 2 * centreAt(i, edge, to_border) - 1, t});
             const double pitch = texelPitch(pitch_on_face, direction);
-            const double share = areaShare(pitch / row_pitch);
+            const double share = areaShare(pitch / row_pitch, enlarging);
             V3d value(0);
             if (share > 0) {
                 Sum sum;
@@ -102,7 +102,7 @@ void latlongToCube(const Panorama& source, Panorama& result, int threads) {
     });
 }
 
-void cubeToLatlong(const Panorama& source, Panorama& result, int threads) {
+void cubeToLatlong(const Panorama& source, Panorama& result, Enlarging enlarging, int threads) {
     const bool from_border = hasBorderRule(source.layout), to_border = hasBorderRule(result.layout);
     const CubePlacement place(source);
     const int edge = place.edge;
@@ -113,7 +113,7 @@ void cubeToLatlong(const Panorama& source, Panorama& result, int threads) {
     // Each face gathers its own sums, which are added in the order of the faces afterwards: the
     // same bytes for any number of threads.
     std::array<FaceSums, 6> sums;
-    if (areaShare(row_pitch / texelPitch(pitch_on_face, V3d(1))) > 0) {
+    if (areaShare(row_pitch / texelPitch(pitch_on_face, V3d(1)), enlarging) > 0) {
         const CubeLatlongOverlaps overlaps =
             cubeLatlongOverlaps(cubeGrid(edge, from_border), grid, threads);
         parallelFor(6, threads, [&](std::size_t f) {
@@ -143,7 +143,8 @@ void cubeToLatlong(const Panorama& source, Panorama& result, int threads) {
         for (int x = 0; x < grid.columns; ++x) {
             const V3d& level = equator[static_cast<std::size_t>(x)];
             const V3d direction(level.x * sine, cosine, level.z * sine);
-            const double share = areaShare(row_pitch / texelPitch(pitch_on_face, direction));
+            const double share =
+                areaShare(row_pitch / texelPitch(pitch_on_face, direction), enlarging);
             V3d value(0);
             if (share > 0) {
                 Sum total;

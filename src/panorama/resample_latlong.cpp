@@ -20,9 +20,10 @@ int wrapped(long k, int columns) {
 }
 
 /// Where column x of `to` takes its value along the parallel; weights sum to 1.
-std::vector<Tap> columnTaps(const LatlongGrid& from, const LatlongGrid& to, int x) {
+std::vector<Tap> columnTaps(const LatlongGrid& from, const LatlongGrid& to, int x,
+                            Enlarging enlarging) {
     const double scale = static_cast<double>(from.columns) / to.columns;
-    const double share = areaShare(scale);
+    const double share = areaShare(scale, enlarging);
     std::vector<Tap> taps;
     if (share > 0) {
         const double begin = (x + to.first) * from.columns / to.columns - from.first;
@@ -51,10 +52,10 @@ struct Meridian {
 
 /// Where row y of `to` takes its value along the meridian: rows of `from`, or -1 and rows() for the
 /// means at its poles.
-std::vector<Tap> rowTaps(const Meridian& from, const Meridian& to, int y) {
+std::vector<Tap> rowTaps(const Meridian& from, const Meridian& to, int y, Enlarging enlarging) {
     const int rows = from.grid.rows();
-    const double share =
-        areaShare(centrePitch(1, to.grid.rows(), to.border) / centrePitch(1, rows, from.border));
+    const double share = areaShare(
+        centrePitch(1, to.grid.rows(), to.border) / centrePitch(1, rows, from.border), enlarging);
     std::vector<Tap> taps;
     if (share > 0) {
         const auto k = static_cast<std::size_t>(y);
@@ -117,7 +118,7 @@ LatlongPixels::LatlongPixels(const Panorama& p) : image_(&p.image) {
     image_ = &folded_;
 }
 
-void latlongToLatlong(const Panorama& source, Panorama& result, int threads) {
+void latlongToLatlong(const Panorama& source, Panorama& result, Enlarging enlarging, int threads) {
     const bool from_border = hasBorderRule(source.layout), to_border = hasBorderRule(result.layout);
     const Meridian from{latlongGrid(source.image.width, source.image.height, from_border),
                         from_border};
@@ -128,11 +129,11 @@ void latlongToLatlong(const Panorama& source, Panorama& result, int threads) {
 
     std::vector<std::vector<Tap>> across(static_cast<std::size_t>(to.grid.columns));
     for (int x = 0; x < to.grid.columns; ++x) {
-        across[static_cast<std::size_t>(x)] = columnTaps(from.grid, to.grid, x);
+        across[static_cast<std::size_t>(x)] = columnTaps(from.grid, to.grid, x, enlarging);
     }
     parallelFor(static_cast<std::size_t>(to.grid.rows()), threads, [&](std::size_t y) {
         std::vector<V3d> sums(static_cast<std::size_t>(columns), V3d(0));
-        for (const Tap& tap : rowTaps(from, to, static_cast<int>(y))) {
+        for (const Tap& tap : rowTaps(from, to, static_cast<int>(y), enlarging)) {
             const bool pole = tap.index < 0 || tap.index >= rows;
             const V3d at_pole = tap.index < 0 ? north : south;
             const float* row = pole ? nullptr : pixels.row(tap.index);

@@ -5,19 +5,21 @@
 #include "panorama/layouts.h"
 #include "panorama/overlap.h"
 #include "panorama/panorama.h"
+#include "panorama/resample.h"
 
 #include <algorithm>
 
 namespace ibl {
 
-void latlongToLatlong(const Panorama& source, Panorama& result, int threads);
-void latlongToCube(const Panorama& source, Panorama& result, int threads);
-void cubeToLatlong(const Panorama& source, Panorama& result, int threads);
-void cubeToCube(const Panorama& source, Panorama& result, int threads);
+void latlongToLatlong(const Panorama& source, Panorama& result, Enlarging enlarging, int threads);
+void latlongToCube(const Panorama& source, Panorama& result, Enlarging enlarging, int threads);
+void cubeToLatlong(const Panorama& source, Panorama& result, Enlarging enlarging, int threads);
+void cubeToCube(const Panorama& source, Panorama& result, Enlarging enlarging, int threads);
 
 /// The share of the area filter (the rest is interpolation) where a new texel is `ratio` old pixels
 /// wide: none up to 0.8, all from 1 on, smooth between.
-inline double areaShare(double ratio) {
+inline double areaShare(double ratio, Enlarging enlarging = Enlarging::interpolate) {
+    if (enlarging == Enlarging::hold) return 1;
     const double x = std::clamp((ratio - 0.8) / 0.2, 0.0, 1.0);
     return x * x * (3 - 2 * x);
 }
