@@ -95,11 +95,10 @@ NarrowPeaks makeNarrowPeaks(const std::vector<Peak>& peaks, int width, int heigh
                             const NarrowLobe& narrow) {
     const int degree = static_cast<int>(narrow.k.size()) - 1;
     NarrowPeaks result{makePeakSum(peaks, width, height, lobe), narrow.area, 0, 0, {}, 0};
-    // The taper's width in degrees, 0.05 B, makes the difference fall as exp(-(0.05 B t)^2 / 2).
-    result.reach = std::min(0.5 * kPi, 110.0 / degree);
     result.variation = 2.0 / degree;
     result.step = 1.0 / (16 * degree);
-    const int count = static_cast<int>(result.reach / result.step) + 3;
+    // The taper's width in degrees, 0.05 B, makes the difference fall as exp(-(0.05 B t)^2 / 2).
+    const int count = static_cast<int>(std::min(1.4, 110.0 / degree) / result.step) + 3;
     result.beyond.resize(static_cast<std::size_t>(count));
     for (int i = 0; i < count; ++i) {
         const double chord = i * result.step, x = 1 - 0.5 * chord * chord;
@@ -112,6 +111,16 @@ NarrowPeaks makeNarrowPeaks(const std::vector<Peak>& peaks, int width, int heigh
         }
         result.beyond[static_cast<std::size_t>(i)] = narrow.k[0] - mass;
     }
+    constexpr double kNoMass = 1e-7;
+    int last = count - 3;
+    const auto difference = [&](int i) {
+        const double half_chord = 0.5 * i * result.step;
+        return std::abs(result.beyond[static_cast<std::size_t>(i)] -
+                        result.sum.mass_beyond(half_chord * half_chord));
+    };
+    while (last > 1 && difference(last) < kNoMass)
+        --last;
+    result.reach = last * result.step;
     return result;
 }
 
@@ -146,13 +155,15 @@ double meanAtPoints(const Q& q, double total, const Disc& disc, const Rectangle&
     return mean;
 }
 
-/// Whether the texel reaches so near to the pixel that the lobe may fall between its points.
-bool isNear(const std::array<V3d, 4>& corners, const PeakRectangle& r) {
-    const V3d pixel = r.coarse.directions[0];
-    const double size = (corners[0] - corners[2]).length();
-    const auto chord = [&](const V3d& c) { return (c - pixel).length(); };
-    return std::ranges::min(corners | std::views::transform(chord)) < 2 * (size + r.size) &&
-           std::ranges::max(corners | std::views::transform(chord)) < 1;
+/// Whether the texel reaches so near to the pixel that the lobe may fall between its points,
+/// `spacing` apart: at t from its axis it varies over t / 2 at least.
+bool isNear(const std::array<V3d, 4>& corners, const PeakRectangle& r, double spacing) {
+    const auto diagonal = [](const V3d& a, const V3d& b) { return (a - b).length(); };
+    const double texel =
+        std::max(diagonal(corners[0], corners[2]), diagonal(corners[1], corners[3]));
+    const V3d centre = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
+    const double distance = (centre - r.coarse.directions[0]).length();
+    return distance < 0.5 * texel + 1.5 * r.size + 8 * spacing && distance + texel < 1.2;
 }
 
 } // namespace
@@ -171,17 +182,17 @@ void addNarrowPeaks(const NarrowPeaks& peaks, const MapRow& row, const Footprint
             texels[3 * t + c] -= peaks.area * area_row[3 * t + c];
         const std::array<V3d, 4> corners =
             texelCorners(row.layout, row.width, row.height, points.column[t], row.y, 1);
+        const double size = (corners[0] - corners[2]).length();
+        const double spacing = footprint.scale * size / footprint.samples;
         for (std::size_t p = 0; p < sum.peaks.size(); ++p) {
             const PeakRectangle& r = sum.rectangles[p];
-            const double size = (corners[0] - corners[2]).length();
             const double far = peaks.reach + 2 * (r.size + size);
             if ((corners[0] - r.coarse.directions[0]).length() > far) continue;
             double mean;
-            if (footprint.scale > 0 && isNear(corners, r)) {
-                const Quad texel =
-                    quadInPlane(r.edges, texelCorners(row.layout, row.width, row.height,
-                                                      points.column[t], row.y, footprint.scale));
-                mean = texelMean(sum.mass_beyond, texel, pixelQuad(r.edges)) -
+            if (footprint.scale > 0 && isNear(corners, r, spacing)) {
+                const std::array<V3d, 4> shrunk = texelCorners(
+                    row.layout, row.width, row.height, points.column[t], row.y, footprint.scale);
+                mean = texelMean(sum.mass_beyond, shrunk, r.edges) -
                        meanAtPoints(band, 1 - peaks.area, {0.5 * kPi, peaks.variation}, r.edges,
                                     points, t);
             } else {

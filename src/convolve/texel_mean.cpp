@@ -11,6 +11,8 @@ namespace {
 constexpr int kDirections = 20;
 /// Displacements to the smaller of texel and pixel.
 constexpr int kSteps = 12;
+/// Pixels wider than this (radians) are cut in parts, over which the plane is the sphere to 3e-4.
+constexpr double kLargestPart = 0.03;
 /// Growth of the steps beyond that.
 constexpr double kGrowth = 1.15;
 
@@ -23,13 +25,6 @@ double areaOf(const std::vector<V2d>& polygon) {
     for (std::size_t i = 0; i < polygon.size(); ++i)
         sum += cross(polygon[i], polygon[(i + 1) % polygon.size()]);
     return 0.5 * sum;
-}
-
-/// Counter-clockwise.
-std::vector<V2d> oriented(const Quad& quad) {
-    std::vector<V2d> polygon(quad.begin(), quad.end());
-    if (areaOf(polygon) < 0) std::reverse(polygon.begin(), polygon.end());
-    return polygon;
 }
 
 /// Area of the part of a convex polygon that lies within another, both counter-clockwise
@@ -92,65 +87,88 @@ double meanPlace(const LobeMassBeyond& beyond, double from, double to) {
     return sum / (outer - inner);
 }
 
-} // namespace
-
-Quad quadInPlane(const Rectangle& pixel, const std::array<V3d, 4>& corners) {
-    const double theta = 0.5 * (pixel.top + pixel.bottom), psi = 0.5 * (pixel.west + pixel.east);
+/// Corners in the plane that touches the sphere at the rectangle's middle, counter-clockwise.
+std::vector<V2d> inPlane(const Rectangle& r, const std::array<V3d, 4>& corners) {
+    const double theta = 0.5 * (r.top + r.bottom), psi = 0.5 * (r.west + r.east);
     const V3d centre = polarDirection(theta, psi), south = polarDirection(theta + 0.5 * kPi, psi);
     const V3d east(-std::sin(psi), std::cos(psi), 0);
-    Quad quad;
-    for (std::size_t i = 0; i < 4; ++i) {
-        quad[i] = V2d(corners[i].dot(east), corners[i].dot(south)) / corners[i].dot(centre);
-    }
-    return quad;
+    std::vector<V2d> polygon;
+    for (const V3d& c : corners)
+        polygon.push_back(V2d(c.dot(east), c.dot(south)) / c.dot(centre));
+    if (areaOf(polygon) < 0) std::reverse(polygon.begin(), polygon.end());
+    return polygon;
 }
 
-Quad pixelQuad(const Rectangle& p) {
-    return quadInPlane(p, {polarDirection(p.top, p.west), polarDirection(p.top, p.east),
-                           polarDirection(p.bottom, p.east), polarDirection(p.bottom, p.west)});
-}
-
-double overlapShare(const Quad& texel, const Quad& pixel) {
-    const std::vector<V2d> t = oriented(texel);
-    return commonArea(oriented(pixel), t) / areaOf(t);
-}
-
-// a(t) is taken as linear between displacements.
-double texelMean(const LobeMassBeyond& mass_beyond, const Quad& texel, const Quad& pixel) {
-    const std::vector<V2d> t = oriented(texel), p = oriented(pixel);
-    const Extent extent_t = extentOf(t), extent_p = extentOf(p);
-    const V2d between = extent_t.centre - extent_p.centre;
-    const double room = extent_t.radius + extent_p.radius, distance = between.length();
-    const double farthest = distance + room;
-    const double step = std::min(extent_t.radius, extent_p.radius) / kSteps;
-    const auto share = [&](double displacement) {
+/// The integral of |T n (P + t)| dM(t). The overlap is taken as linear between displacements.
+double planeIntegral(const LobeMassBeyond& mass_beyond, const std::vector<V2d>& texel,
+                     const std::vector<V2d>& pixel) {
+    const Extent of_texel = extentOf(texel), of_pixel = extentOf(pixel);
+    const V2d between = of_texel.centre - of_pixel.centre;
+    const double room = of_texel.radius + of_pixel.radius, distance = between.length();
+    const auto overlap = [&](double displacement) {
         if (displacement < distance - room) return 0.0;
         double sum = 0;
         for (int k = 0; k < kDirections; ++k) {
             const double angle = 2 * kPi * (k + 0.25) / kDirections;
             const V2d by = V2d(std::cos(angle), std::sin(angle)) * displacement;
             if ((between - by).length() > room) continue;
-            std::vector<V2d> moved = p;
+            std::vector<V2d> moved = pixel;
             for (V2d& corner : moved)
                 corner += by;
-            sum += commonArea(std::move(moved), t);
+            sum += commonArea(std::move(moved), texel);
         }
-        return sum / kDirections / areaOf(t);
+        return sum / kDirections;
     };
-    double from = 0, share_from = share(0), mass_from = 0, mean = 0;
-    for (double width = step; from < farthest && from < 1.5;
-         width *= from < 2 * room ? 1 : kGrowth) {
-        const double to = from + width, share_to = share(to);
+    const double smaller = std::min(of_texel.radius, of_pixel.radius);
+    double step = smaller / kSteps;
+    double from = 0, overlap_from = overlap(0), mass_from = 0, integral = 0;
+    while (from < distance + room && from < 1.5) {
+        const double to = from + step, overlap_to = overlap(to);
         const double mass_to = massWithin(mass_beyond, to);
-        if (share_from > 0 || share_to > 0) {
+        if (overlap_from > 0 || overlap_to > 0) {
             const double place = meanPlace(mass_beyond, from, to);
-            mean += (mass_to - mass_from) * (share_from + (share_to - share_from) * place);
+            integral +=
+                (mass_to - mass_from) * (overlap_from + (overlap_to - overlap_from) * place);
         }
         from = to;
-        share_from = share_to;
+        overlap_from = overlap_to;
         mass_from = mass_to;
+        if (from > 2 * smaller) step *= kGrowth;
     }
-    return mean;
+    return integral;
+}
+
+/// Solid angle of the triangle of three directions (van Oosterom and Strackee 1983).
+double triangle(const V3d& a, const V3d& b, const V3d& c) {
+    return 2 * std::atan2(std::abs(a.dot(b.cross(c))), 1 + a.dot(b) + b.dot(c) + c.dot(a));
+}
+
+} // namespace
+
+double texelMean(const LobeMassBeyond& mass_beyond, const std::array<V3d, 4>& texel,
+                 const Rectangle& pixel) {
+    const double solid_angle =
+        triangle(texel[0], texel[1], texel[2]) + triangle(texel[0], texel[2], texel[3]);
+    const double middle = 0.5 * (pixel.top + pixel.bottom);
+    const double height = pixel.bottom - pixel.top, width = pixel.east - pixel.west;
+    const int rows = static_cast<int>(std::ceil(height / kLargestPart));
+    const int columns =
+        std::max(1, static_cast<int>(std::ceil(width * std::sin(middle) / kLargestPart)));
+    double sum = 0;
+    for (int j = 0; j < rows; ++j) {
+        for (int i = 0; i < columns; ++i) {
+            const Rectangle r{pixel.top + height * j / rows, pixel.top + height * (j + 1) / rows,
+                              pixel.west + width * i / columns,
+                              pixel.west + width * (i + 1) / columns};
+            const std::vector<V2d> part =
+                inPlane(r, {polarDirection(r.top, r.west), polarDirection(r.top, r.east),
+                            polarDirection(r.bottom, r.east), polarDirection(r.bottom, r.west)});
+            // The plane's areas as the sphere's.
+            const double area = (r.east - r.west) * (std::cos(r.top) - std::cos(r.bottom));
+            sum += planeIntegral(mass_beyond, inPlane(r, texel), part) * area / areaOf(part);
+        }
+    }
+    return sum / solid_angle;
 }
 
 } // namespace ibl

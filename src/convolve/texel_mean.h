@@ -15,24 +15,14 @@
 #include "convolve/lobe.h"
 #include "convolve/peaks.h"
 
-#include <Imath/ImathVec.h>
-
 #include <array>
 
 namespace ibl {
 
-/// Corners in order, either way around.
-using Quad = std::array<V2d, 4>;
-
-/// Pixel and texel in that plane. `corners` are directions; all must be nearer to the pixel's
-/// centre than a right angle.
-Quad pixelQuad(const Rectangle& pixel);
-Quad quadInPlane(const Rectangle& pixel, const std::array<V3d, 4>& corners);
-
-/// The mean over the texel of the lobe's normalised mass over the pixel.
-double texelMean(const LobeMassBeyond& mass_beyond, const Quad& texel, const Quad& pixel);
-
-/// |T n P| / |T|: that of a mirror.
-double overlapShare(const Quad& texel, const Quad& pixel);
+/// The mean over the texel of the lobe's normalised mass over the pixel. The texel's corners are
+/// polar directions (peaks.h) in order around, less than about a radian from the pixel; its edges
+/// are taken as great circles.
+double texelMean(const LobeMassBeyond& mass_beyond, const std::array<V3d, 4>& texel,
+                 const Rectangle& pixel);
 
 } // namespace ibl

@@ -154,7 +154,7 @@ TEST(Narrow, ASunLeavesNoRingAndKeepsItsEnergy) {
             }
         }
         EXPECT_GT(result.peaks_split, 0);
-        EXPECT_NEAR(energy / total, 1, 5e-3) << roughness;
+        EXPECT_NEAR(energy / total, 1, 1e-3) << roughness;
         EXPECT_GT(least, 0.1)
             << roughness; // means of noise from 0 to 1: a ring would be clamped to 0
         EXPECT_LT(footprintError(probe, request, map, 48), 1e-2) << roughness;
