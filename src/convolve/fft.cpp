@@ -110,6 +110,12 @@ IBL_INLINE void stockhamPasses(const FftPlan& plan, ComplexLanes* data, ComplexL
             passOdd(pass, 3);
         else if (radix == 5)
             passOdd(pass, 5);
+        else if (radix == 7)
+            passOdd(pass, 7);
+        else if (radix == 11)
+            passOdd(pass, 11);
+        else if (radix == 13)
+            passOdd(pass, 13);
         else
             passOdd(pass, radix);
         n /= radix;
