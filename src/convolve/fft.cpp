@@ -190,8 +190,9 @@ IBL_MULTIVERSION
 void combine(const PrunedFft& plan, const ComplexLanes* data, ComplexLanes* out) {
     const int n = plan.length, size = plan.part.length;
     const int first = ((-plan.most % n) + n) % n;
-    for (int k = -plan.most, at = first; k <= plan.most; ++k, at = at + 1 < n ? at + 1 : 0) {
-        const ComplexLanes* y = data + at % size;
+    int at = first, slot = first % size;
+    for (int k = -plan.most; k <= plan.most; ++k) {
+        const ComplexLanes* y = data + slot;
         ComplexLanes sum = *y;
         int root = 0;
         for (int q = 1; q < plan.split; ++q) {
@@ -201,6 +202,8 @@ void combine(const PrunedFft& plan, const ComplexLanes* data, ComplexLanes* out)
             sum = add(sum, mul(*y, plan.roots[root]));
         }
         out[k + plan.most] = sum;
+        at = at + 1 < n ? at + 1 : 0;
+        slot = slot + 1 < size ? slot + 1 : 0;
     }
 }
 
@@ -241,6 +244,7 @@ PrunedFft makePrunedFft(int length, int most) {
     while (plan.length / plan.split % 2 == 0 &&
            kProduct * plan.split * (2.0 * most + 1) < kHalfPass * length) {
         plan.split *= 2;
+        ++plan.shift;
     }
     plan.part = makeFftPlan(length / plan.split);
     for (int k = 0; k < length; ++k)
