@@ -97,8 +97,9 @@ struct Chains {
     alignas(64) double current[2][kPairs];
     alignas(64) double exponent[kPairs];
     alignas(64) double argument[kPairs];
-    int count; ///< pairs, a multiple of kPairGroup
-    int live;  ///< first pair of the first group that counts; the values before it are not set
+    int count;                          ///< pairs, a multiple of kPairGroup
+    int live;                           ///< first pair of the first group that counts
+    bool all_live[kPairs / kPairGroup]; ///< whether all pairs of a group count
 };
 
 IBL_INLINE void startChains(const RingPairs& rings, const Sectoral& sectoral, int first, int count,
@@ -106,6 +107,7 @@ IBL_INLINE void startChains(const RingPairs& rings, const Sectoral& sectoral, in
     const double odd = std::sqrt(2.0 * sectoral.m + 3);
     chains.count = count;
     chains.live = count;
+    std::fill(std::begin(chains.all_live), std::end(chains.all_live), false);
     for (int p = 0; p < count; ++p) {
         const double value = sectoral.mantissa[first + p];
         chains.argument[p] = rings.argument[first + p];
@@ -141,45 +143,57 @@ struct VectorOf {
     typedef double Type __attribute__((vector_size(Width * sizeof(double)), may_alias));
 };
 
+/// One vector of pairs, of one parity, through kDegrees degrees: values[degree][pair], times `mask`
+/// unless all pairs count.
+template <int Width, bool All>
+IBL_INLINE void advanceVector(double* previous, double* current, const double* argument,
+                              const double* mask, const double* a, const double* b,
+                              double* values) {
+    using Vector = typename VectorOf<Width>::Type;
+    const Vector x = *reinterpret_cast<const Vector*>(argument);
+    Vector p = *reinterpret_cast<const Vector*>(previous);
+    Vector q = *reinterpret_cast<const Vector*>(current);
+    const auto put = [&](int i, const Vector& value) {
+        Vector& out = *reinterpret_cast<Vector*>(values + i * kPairs);
+        if constexpr (All)
+            out = value;
+        else
+            out = value * *reinterpret_cast<const Vector*>(mask);
+    };
+    for (int i = 0; i < kDegrees; i += 4) {
+        put(i, q);
+        p = (a[i] * x - b[i]) * q - p;
+        put(i + 2, p);
+        q = (a[i + 2] * x - b[i + 2]) * p - q;
+    }
+    *reinterpret_cast<Vector*>(previous) = p;
+    *reinterpret_cast<Vector*>(current) = q;
+}
+
 /// One group's Legendre functions of kDegrees degrees from m + `from`: values[degree][pair].
 template <int Width>
 IBL_INLINE void advanceGroup(Chains& chains, const Steps& steps, int from, int group,
                              double (*values)[kPairs]) {
-    using Vector = typename VectorOf<Width>::Type;
-    constexpr int kVectors = kPairGroup / Width;
     alignas(64) double mask[kPairGroup];
-    const int live = renormalise(chains, group, mask);
-    if (live > 0) chains.live = std::min(chains.live, group);
-    Vector x[kVectors], p[2][kVectors], q[2][kVectors], counts[kVectors];
-    for (int v = 0; v < kVectors; ++v) {
-        const int at = group + v * Width;
-        x[v] = *reinterpret_cast<const Vector*>(chains.argument + at);
-        counts[v] = *reinterpret_cast<const Vector*>(mask + v * Width);
-        for (int parity = 0; parity < 2; ++parity) {
-            p[parity][v] = *reinterpret_cast<const Vector*>(chains.previous[parity] + at);
-            q[parity][v] = *reinterpret_cast<const Vector*>(chains.current[parity] + at);
-        }
+    bool& all = chains.all_live[group / kPairGroup];
+    if (!all) {
+        const int live = renormalise(chains, group, mask);
+        if (live > 0) chains.live = std::min(chains.live, group);
+        all = live == kPairGroup;
     }
     const bool near_pole = chains.argument[group] < 0;
     const double *a = steps.a.data() + from, *b = (near_pole ? steps.b_a : steps.b).data() + from;
-    for (int i = 0; i < kDegrees; i += 2) {
+    for (int v = 0; v < kPairGroup; v += Width) {
         for (int parity = 0; parity < 2; ++parity) {
-            for (int v = 0; v < kVectors; ++v) {
-                const Vector now = q[parity][v];
-                if (group >= chains.live) {
-                    *reinterpret_cast<Vector*>(values[i + parity] + group + v * Width) =
-                        live == kPairGroup ? now : now * counts[v];
-                }
-                q[parity][v] = (a[i + parity] * x[v] - b[i + parity]) * now - p[parity][v];
-                p[parity][v] = now;
-            }
-        }
-    }
-    for (int v = 0; v < kVectors; ++v) {
-        const int at = group + v * Width;
-        for (int parity = 0; parity < 2; ++parity) {
-            *reinterpret_cast<Vector*>(chains.previous[parity] + at) = p[parity][v];
-            *reinterpret_cast<Vector*>(chains.current[parity] + at) = q[parity][v];
+            double *previous = chains.previous[parity] + group + v,
+                   *current = chains.current[parity] + group + v, *out = values[parity] + group + v;
+            const double* argument = chains.argument + group + v;
+            if (all)
+                advanceVector<Width, true>(previous, current, argument, mask + v, a + parity,
+                                           b + parity, out);
+            else
+                advanceVector<Width, false>(previous, current, argument, mask + v, a + parity,
+                                            b + parity, out);
         }
     }
 }
