@@ -181,7 +181,7 @@ IBL_INLINE void advanceGroup(Chains& chains, const Steps& steps, int from, int g
         if (live > 0) chains.live = std::min(chains.live, group);
         all = live == kPairGroup;
     }
-    const bool near_pole = chains.argument[group] < 0;
+    const bool near_pole = std::signbit(chains.argument[group]); // at a pole it is -0
     const double *a = steps.a.data() + from, *b = (near_pole ? steps.b_a : steps.b).data() + from;
     for (int v = 0; v < kPairGroup; v += Width) {
         for (int parity = 0; parity < 2; ++parity) {
