@@ -1,6 +1,7 @@
 #include "convolve/fft.h"
 
 #include <algorithm>
+#include <limits>
 #include <numbers>
 
 namespace ibl {
@@ -235,17 +236,23 @@ void fft(const FftPlan& plan, ComplexLanes* data, ComplexLanes* workspace) {
 }
 
 PrunedFft makePrunedFft(int length, int most) {
+    // Roughly the operations an input, or an output and part.
+    constexpr double kFour = 11, kTwo = 7, kOther = 20, kCopy = 4, kProduct = 7;
     PrunedFft plan;
     plan.length = length;
     plan.most = most;
-    // Each halving saves a pass over all inputs (half of a pass by four) and costs a product for
-    // each output and part.
-    constexpr double kHalfPass = 5.5, kProduct = 7;
-    while (plan.length / plan.split % 2 == 0 &&
-           kProduct * plan.split * (2.0 * most + 1) < kHalfPass * length) {
-        plan.split *= 2;
-        ++plan.shift;
+    double best = std::numeric_limits<double>::infinity();
+    for (int shift = 0; length % (1 << shift) == 0; ++shift) {
+        const std::vector<int> factors = factorsOf(length >> shift);
+        double cost = factors.size() % 2 ? kCopy : 0;
+        for (const int factor : factors)
+            cost += factor == 4 ? kFour : factor == 2 ? kTwo : kOther;
+        cost = cost * length + kProduct * (1 << shift) * (2.0 * most + 1);
+        if (cost >= best) continue;
+        best = cost;
+        plan.shift = shift;
     }
+    plan.split = 1 << plan.shift;
     plan.part = makeFftPlan(length / plan.split);
     for (int k = 0; k < length; ++k)
         plan.roots.push_back(unitRoot(static_cast<double>(k) / length));

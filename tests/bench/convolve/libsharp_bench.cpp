@@ -2,8 +2,10 @@
 //
 // Both synthesise random coefficients up to degree L on 2 (L + 1) rings (Fejer's first rule) of
 // twice as many columns, and analyse what comes of it by Fejer's weights. They take turns, so that
-// both meet the same machine; `ratio` is libsharp's median time over ours, `error` the relative RMS
-// of our round trip, `sharp_error` that of libsharp's, `difference` that between the two.
+// both meet the same machine; `ratio` is libsharp's median time over ours, `cpu_ratio` the same of
+// processor time, which a busy machine sways less (libsharp's second thread spins while it waits,
+// so it means little with two). `error` is the relative RMS of our round trip, `sharp_error` that
+// of libsharp's, `difference` that between the two.
 #include "convolve/analysis.h"
 #include "convolve/synthesis.h"
 #include "convolve/theta_resample.h"
@@ -20,6 +22,7 @@
 #include <chrono>
 #include <cmath>
 #include <complex>
+#include <ctime>
 #include <numbers>
 
 namespace {
@@ -28,11 +31,18 @@ using namespace ibl;
 using Complex = std::complex<double>;
 constexpr double kPi = std::numbers::pi;
 
-double secondsOf(const auto& work) {
-    const auto start = std::chrono::steady_clock::now();
-    work();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
+struct Seconds {
+    std::vector<double> wall, cpu;
+
+    void add(const auto& work) {
+        const auto start = std::chrono::steady_clock::now();
+        const std::clock_t cpu_start = std::clock();
+        work();
+        cpu.push_back(static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC);
+        wall.push_back(
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    }
+};
 
 double median(std::vector<double> values) {
     std::ranges::nth_element(values, values.begin() + values.size() / 2);
@@ -191,11 +201,11 @@ Harmonics analyseParts(const std::array<Image, 3>& images, int degree, int threa
     return sum;
 }
 
-void report(benchmark::State& state, const std::vector<double>& ours,
-            const std::vector<double>& sharp) {
-    state.counters["ours_ms"] = 1e3 * median(ours);
-    state.counters["sharp_ms"] = 1e3 * median(sharp);
-    state.counters["ratio"] = median(sharp) / median(ours);
+void report(benchmark::State& state, const Seconds& ours, const Seconds& sharp) {
+    state.counters["ours_ms"] = 1e3 * median(ours.wall);
+    state.counters["sharp_ms"] = 1e3 * median(sharp.wall);
+    state.counters["ratio"] = median(sharp.wall) / median(ours.wall);
+    state.counters["cpu_ratio"] = median(sharp.cpu) / median(ours.cpu);
 }
 
 void synthesis(benchmark::State& state) {
@@ -205,12 +215,12 @@ void synthesis(benchmark::State& state) {
     const std::vector<double> ones(static_cast<std::size_t>(degree + 1), 1.0);
     Sharp sharp(degree, rings, threads);
     sharp.setHarmonics(f);
-    std::vector<double> map(static_cast<std::size_t>(6) * rings * rings), ours_s, sharp_s;
+    std::vector<double> map(static_cast<std::size_t>(6) * rings * rings);
+    Seconds ours_s, sharp_s;
     for (auto _ : state) {
-        sharp_s.push_back(secondsOf([&] { sharp.execute(SHARP_Y); }));
-        ours_s.push_back(
-            secondsOf([&] { synthesiseGrid(f, ones, degree, rings, threads, map.data()); }));
-        state.SetIterationTime(ours_s.back());
+        sharp_s.add([&] { sharp.execute(SHARP_Y); });
+        ours_s.add([&] { synthesiseGrid(f, ones, degree, rings, threads, map.data()); });
+        state.SetIterationTime(ours_s.wall.back());
     }
     report(state, ours_s, sharp_s);
     holdError(state, "difference", relativeRms(map, sharp.map()), 1e-12);
@@ -226,12 +236,11 @@ void analysis(benchmark::State& state) {
     synthesiseGrid(f, ones, degree, rings, threads, map.data());
     const std::array<Image, 3> images = weightedImages(map, sharp.weights());
     sharp.setMap(map);
-    std::vector<double> ours_s, sharp_s;
+    Seconds ours_s, sharp_s;
     for (auto _ : state) {
-        sharp_s.push_back(secondsOf([&] { sharp.execute(SHARP_YtW); }));
-        ours_s.push_back(secondsOf(
-            [&] { benchmark::DoNotOptimize(analyseSamples(images[0], degree, threads)); }));
-        state.SetIterationTime(ours_s.back());
+        sharp_s.add([&] { sharp.execute(SHARP_YtW); });
+        ours_s.add([&] { benchmark::DoNotOptimize(analyseSamples(images[0], degree, threads)); });
+        state.SetIterationTime(ours_s.wall.back());
     }
     report(state, ours_s, sharp_s);
     const std::vector<double> ours = flat(analyseParts(images, degree, threads));
