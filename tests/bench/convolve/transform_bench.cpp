@@ -81,7 +81,7 @@ double wave(int m, int k, double theta) {
 
 /// kColumnsAtOnce columns of samples of a wave each, brought from `in` to `out` rings.
 void theta(benchmark::State& state) {
-    const int degree = static_cast<int>(state.range(0)), in = ringsFor(degree), out = 3 * in / 2;
+    const int degree = static_cast<int>(state.range(0)), in = ringsFor(degree), out = 2 * in;
     const ThetaResample plan = makeThetaResample(in, out, degree, RingSource::samples);
     LaneVector<double> from(static_cast<std::size_t>(kColumnsAtOnce) * kParts * in);
     LaneVector<double> to(static_cast<std::size_t>(kColumnsAtOnce) * kParts * out);
