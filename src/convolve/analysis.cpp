@@ -147,8 +147,8 @@ RowSpectrum analyseRows(const Image& probe, double scale, double threshold, int 
 
 Harmonics analyse(const RowSpectrum& rows, int degree, int threads) {
     Harmonics harmonics(degree);
-    const RingPairs rings = makeRings(ringsFor(degree));
-    const int count = 2 * rings.pairs;
+    const int count = ringsFor(degree);
+    const RingPairs rings = makeRings(count);
     const ThetaResample plan =
         makeThetaResample(rows.rows, count, degree + 1, RingSource::pixel_rows);
     parallelFor(degree / kColumnsAtOnce + 1, threads, [&](std::size_t group) {

@@ -29,8 +29,13 @@ Thetas differentThetas(const double* v, std::size_t n) {
     std::vector<double> sorted = folded;
     std::ranges::sort(sorted);
     for (const double theta : sorted) {
-        if (thetas.different.empty() || theta - thetas.different.back() > kSameTheta)
-            thetas.different.push_back(theta);
+        std::vector<double>& different = thetas.different;
+        if (!different.empty() && theta - different.back() <= kSameTheta) continue;
+        // No group has thetas from either side of pi / 4: the one near the pole are reckoned apart.
+        const bool crosses = !different.empty() && different.back() < kPi / 4 && theta >= kPi / 4;
+        while (crosses && different.size() % kPairGroup != 0)
+            different.push_back(different.back());
+        different.push_back(theta);
     }
     for (const double theta : folded) {
         const auto above = std::ranges::upper_bound(thetas.different, theta);

@@ -1,6 +1,7 @@
 #include "convolve/fft.h"
 
 #include <algorithm>
+#include <limits>
 #include <numbers>
 
 namespace ibl {
@@ -110,6 +111,12 @@ IBL_INLINE void stockhamPasses(const FftPlan& plan, ComplexLanes* data, ComplexL
             passOdd(pass, 3);
         else if (radix == 5)
             passOdd(pass, 5);
+        else if (radix == 7)
+            passOdd(pass, 7);
+        else if (radix == 11)
+            passOdd(pass, 11);
+        else if (radix == 13)
+            passOdd(pass, 13);
         else
             passOdd(pass, radix);
         n /= radix;
@@ -184,8 +191,9 @@ IBL_MULTIVERSION
 void combine(const PrunedFft& plan, const ComplexLanes* data, ComplexLanes* out) {
     const int n = plan.length, size = plan.part.length;
     const int first = ((-plan.most % n) + n) % n;
-    for (int k = -plan.most, at = first; k <= plan.most; ++k, at = at + 1 < n ? at + 1 : 0) {
-        const ComplexLanes* y = data + at % size;
+    int at = first, slot = first % size;
+    for (int k = -plan.most; k <= plan.most; ++k) {
+        const ComplexLanes* y = data + slot;
         ComplexLanes sum = *y;
         int root = 0;
         for (int q = 1; q < plan.split; ++q) {
@@ -195,6 +203,8 @@ void combine(const PrunedFft& plan, const ComplexLanes* data, ComplexLanes* out)
             sum = add(sum, mul(*y, plan.roots[root]));
         }
         out[k + plan.most] = sum;
+        at = at + 1 < n ? at + 1 : 0;
+        slot = slot + 1 < size ? slot + 1 : 0;
     }
 }
 
@@ -226,16 +236,23 @@ void fft(const FftPlan& plan, ComplexLanes* data, ComplexLanes* workspace) {
 }
 
 PrunedFft makePrunedFft(int length, int most) {
+    // Roughly the operations an input, or an output and part.
+    constexpr double kFour = 11, kTwo = 7, kOther = 20, kCopy = 4, kProduct = 7;
     PrunedFft plan;
     plan.length = length;
     plan.most = most;
-    // Each halving saves a pass over all inputs (half of a pass by four) and costs a product for
-    // each output and part.
-    constexpr double kHalfPass = 5.5, kProduct = 7;
-    while (plan.length / plan.split % 2 == 0 &&
-           kProduct * plan.split * (2.0 * most + 1) < kHalfPass * length) {
-        plan.split *= 2;
+    double best = std::numeric_limits<double>::infinity();
+    for (int shift = 0; length % (1 << shift) == 0; ++shift) {
+        const std::vector<int> factors = factorsOf(length >> shift);
+        double cost = factors.size() % 2 ? kCopy : 0;
+        for (const int factor : factors)
+            cost += factor == 4 ? kFour : factor == 2 ? kTwo : kOther;
+        cost = cost * length + kProduct * (1 << shift) * (2.0 * most + 1);
+        if (cost >= best) continue;
+        best = cost;
+        plan.shift = shift;
     }
+    plan.split = 1 << plan.shift;
     plan.part = makeFftPlan(length / plan.split);
     for (int k = 0; k < length; ++k)
         plan.roots.push_back(unitRoot(static_cast<double>(k) / length));

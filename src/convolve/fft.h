@@ -34,13 +34,14 @@ void fft(const FftPlan& plan, ComplexLanes* data, ComplexLanes* workspace);
 struct PrunedFft {
     int length = 1;
     int most = 0;
-    int split = 1;                           ///< Q
+    int split = 1;                           ///< Q, a power of two
+    int shift = 0;                           ///< its logarithm
     FftPlan part;                            ///< of length P
     std::vector<std::complex<double>> roots; ///< exp(-2 pi i k / length)
 
     /// Where input i stands.
     std::size_t slot(int i) const {
-        return static_cast<std::size_t>(i % split) * part.length + i / split;
+        return static_cast<std::size_t>(i & (split - 1)) * part.length + (i >> shift);
     }
 };
 

@@ -16,7 +16,7 @@ namespace ibl {
 
 struct Interpolant {
     static constexpr int kTaps = 8;
-    static constexpr int kTerms = 12; ///< of the polynomials that stand for the window
+    static constexpr int kTerms = 11; ///< of the polynomials that stand for the window
     static constexpr int kSteps = 64;
 
     /// Weight of tap j at t in [0, 1), past sample kTaps / 2 - 1: a polynomial in 2 t - 1, highest

@@ -21,8 +21,12 @@ constexpr int kDegrees = 16;
 constexpr int kPairs = 128;
 
 /// The recurrence's factors for l = m .. degree, filled up with zeros to a multiple of kDegrees.
+///
+/// Near the pole x^2 is close to 1, and its rounding moves theta by eps / sin 2 theta, l times
+/// which is lost at degree l; near the equator that happens to sin^2 theta. So a x^2 - b is there
+/// taken as a (-sin^2 theta) - (b - a).
 struct Steps {
-    std::vector<double> a, b, t;
+    std::vector<double> a, b, b_a, t;
 };
 
 IBL_INLINE void makeSteps(int m, int degree, std::vector<double>& e, Steps& steps) {
@@ -30,6 +34,7 @@ IBL_INLINE void makeSteps(int m, int degree, std::vector<double>& e, Steps& step
     const std::size_t padded = (count + kDegrees - 1) / kDegrees * kDegrees;
     steps.a.assign(padded, 0.0);
     steps.b.assign(padded, 0.0);
+    steps.b_a.assign(padded, 0.0);
     steps.t.assign(padded + 2, 1.0);
     e.resize(static_cast<std::size_t>(count) + 3);
     for (int i = 0; i < count + 3; ++i) { // e_(l-1) stands at i = l - m
@@ -44,8 +49,10 @@ IBL_INLINE void makeSteps(int m, int degree, std::vector<double>& e, Steps& step
         steps.b[i] = e[i + 2] * e[i + 2] + e[i + 1] * e[i + 1];
     }
     for (int i = 0; i < count; ++i) {
-        steps.a[i] *= t[i] / t[i + 2];
-        steps.b[i] *= steps.a[i];
+        const double a = steps.a[i] * t[i] / t[i + 2];
+        steps.a[i] = a;
+        steps.b_a[i] = a * (steps.b[i] - 1);
+        steps.b[i] *= a;
     }
 }
 
@@ -89,9 +96,10 @@ struct Chains {
     alignas(64) double previous[2][kPairs];
     alignas(64) double current[2][kPairs];
     alignas(64) double exponent[kPairs];
-    alignas(64) double x_squared[kPairs];
-    int count; ///< pairs, a multiple of kPairGroup
-    int live;  ///< first pair of the first group that counts; the values before it are not set
+    alignas(64) double argument[kPairs];
+    int count;                          ///< pairs, a multiple of kPairGroup
+    int live;                           ///< first pair of the first group that counts
+    bool all_live[kPairs / kPairGroup]; ///< whether all pairs of a group count
 };
 
 IBL_INLINE void startChains(const RingPairs& rings, const Sectoral& sectoral, int first, int count,
@@ -99,9 +107,10 @@ IBL_INLINE void startChains(const RingPairs& rings, const Sectoral& sectoral, in
     const double odd = std::sqrt(2.0 * sectoral.m + 3);
     chains.count = count;
     chains.live = count;
+    std::fill(std::begin(chains.all_live), std::end(chains.all_live), false);
     for (int p = 0; p < count; ++p) {
         const double value = sectoral.mantissa[first + p];
-        chains.x_squared[p] = rings.x_squared[first + p];
+        chains.argument[p] = rings.argument[first + p];
         chains.exponent[p] = sectoral.exponent[first + p];
         chains.previous[0][p] = chains.previous[1][p] = 0;
         chains.current[0][p] = value;
@@ -134,44 +143,57 @@ struct VectorOf {
     typedef double Type __attribute__((vector_size(Width * sizeof(double)), may_alias));
 };
 
+/// One vector of pairs, of one parity, through kDegrees degrees: values[degree][pair], times `mask`
+/// unless all pairs count.
+template <int Width, bool All>
+IBL_INLINE void advanceVector(double* previous, double* current, const double* argument,
+                              const double* mask, const double* a, const double* b,
+                              double* values) {
+    using Vector = typename VectorOf<Width>::Type;
+    const Vector x = *reinterpret_cast<const Vector*>(argument);
+    Vector p = *reinterpret_cast<const Vector*>(previous);
+    Vector q = *reinterpret_cast<const Vector*>(current);
+    const auto put = [&](int i, const Vector& value) {
+        Vector& out = *reinterpret_cast<Vector*>(values + i * kPairs);
+        if constexpr (All)
+            out = value;
+        else
+            out = value * *reinterpret_cast<const Vector*>(mask);
+    };
+    for (int i = 0; i < kDegrees; i += 4) {
+        put(i, q);
+        p = (a[i] * x - b[i]) * q - p;
+        put(i + 2, p);
+        q = (a[i + 2] * x - b[i + 2]) * p - q;
+    }
+    *reinterpret_cast<Vector*>(previous) = p;
+    *reinterpret_cast<Vector*>(current) = q;
+}
+
 /// One group's Legendre functions of kDegrees degrees from m + `from`: values[degree][pair].
 template <int Width>
 IBL_INLINE void advanceGroup(Chains& chains, const Steps& steps, int from, int group,
                              double (*values)[kPairs]) {
-    using Vector = typename VectorOf<Width>::Type;
-    constexpr int kVectors = kPairGroup / Width;
     alignas(64) double mask[kPairGroup];
-    const int live = renormalise(chains, group, mask);
-    if (live > 0) chains.live = std::min(chains.live, group);
-    Vector x[kVectors], p[2][kVectors], q[2][kVectors], counts[kVectors];
-    for (int v = 0; v < kVectors; ++v) {
-        const int at = group + v * Width;
-        x[v] = *reinterpret_cast<const Vector*>(chains.x_squared + at);
-        counts[v] = *reinterpret_cast<const Vector*>(mask + v * Width);
-        for (int parity = 0; parity < 2; ++parity) {
-            p[parity][v] = *reinterpret_cast<const Vector*>(chains.previous[parity] + at);
-            q[parity][v] = *reinterpret_cast<const Vector*>(chains.current[parity] + at);
-        }
+    bool& all = chains.all_live[group / kPairGroup];
+    if (!all) {
+        const int live = renormalise(chains, group, mask);
+        if (live > 0) chains.live = std::min(chains.live, group);
+        all = live == kPairGroup;
     }
-    const double *a = steps.a.data() + from, *b = steps.b.data() + from;
-    for (int i = 0; i < kDegrees; i += 2) {
+    const bool near_pole = std::signbit(chains.argument[group]); // at a pole it is -0
+    const double *a = steps.a.data() + from, *b = (near_pole ? steps.b_a : steps.b).data() + from;
+    for (int v = 0; v < kPairGroup; v += Width) {
         for (int parity = 0; parity < 2; ++parity) {
-            for (int v = 0; v < kVectors; ++v) {
-                const Vector now = q[parity][v];
-                if (group >= chains.live) {
-                    *reinterpret_cast<Vector*>(values[i + parity] + group + v * Width) =
-                        live == kPairGroup ? now : now * counts[v];
-                }
-                q[parity][v] = (a[i + parity] * x[v] - b[i + parity]) * now - p[parity][v];
-                p[parity][v] = now;
-            }
-        }
-    }
-    for (int v = 0; v < kVectors; ++v) {
-        const int at = group + v * Width;
-        for (int parity = 0; parity < 2; ++parity) {
-            *reinterpret_cast<Vector*>(chains.previous[parity] + at) = p[parity][v];
-            *reinterpret_cast<Vector*>(chains.current[parity] + at) = q[parity][v];
+            double *previous = chains.previous[parity] + group + v,
+                   *current = chains.current[parity] + group + v, *out = values[parity] + group + v;
+            const double* argument = chains.argument + group + v;
+            if (all)
+                advanceVector<Width, true>(previous, current, argument, mask + v, a + parity,
+                                           b + parity, out);
+            else
+                advanceVector<Width, false>(previous, current, argument, mask + v, a + parity,
+                                            b + parity, out);
         }
     }
 }
@@ -305,28 +327,30 @@ IBL_INLINE void synthesiseOrder(const RingPairs& rings, const Sectoral& sectoral
 
 /// Sums and differences of a pair's rings, weighted: g[even, odd][part][pair].
 IBL_INLINE void foldPairs(const RingPairs& rings, const double* column, double* g) {
-    const int pairs = rings.pairs;
-    const double weight = kPi / (2.0 * pairs);
+    const int used = rings.used, pairs = rings.pairs;
+    const double weight = kPi / (2.0 * used);
     for (int part = 0; part < kParts; ++part) {
-        const double *upper = column + static_cast<std::ptrdiff_t>(part) * 2 * pairs,
-                     *lower = upper + 2 * pairs - 1;
+        const double *upper = column + static_cast<std::ptrdiff_t>(part) * 2 * used,
+                     *lower = upper + 2 * used - 1;
         double *even = g + static_cast<std::ptrdiff_t>(part) * pairs, *odd = even + kParts * pairs;
-        for (int p = 0; p < pairs; ++p) {
+        for (int p = 0; p < used; ++p) {
             const double w = weight * rings.sin[p];
             even[p] = w * (upper[p] + lower[-p]);
             odd[p] = w * (upper[p] - lower[-p]);
         }
+        std::fill(even + used, even + pairs, 0.0);
+        std::fill(odd + used, odd + pairs, 0.0);
     }
 }
 
 template <int Width>
 IBL_INLINE void analyseOrders(const Task& task, const double* columns, Harmonics& harmonics) {
     const RingPairs& rings = task.rings;
-    const std::ptrdiff_t column = static_cast<std::ptrdiff_t>(kParts) * 2 * rings.pairs;
+    const std::ptrdiff_t column = static_cast<std::ptrdiff_t>(kParts) * 2 * rings.used;
     Sectoral sectoral = startSectoral(rings, task.first);
     Steps steps;
     std::vector<double> e;
-    LaneVector<double> g(static_cast<std::size_t>(column));
+    LaneVector<double> g(static_cast<std::size_t>(2) * kParts * rings.pairs);
     std::vector<Parts> sums;
     for (int m = task.first; m < task.first + task.count; ++m) {
         makeSteps(m, task.degree, e, steps);
@@ -400,16 +424,20 @@ void synthesiseTask(const Task& task, const Harmonics& harmonics, const double* 
 } // namespace
 
 RingPairs makePairs(std::vector<double> thetas) {
+    RingPairs pairs;
+    pairs.used = static_cast<int>(thetas.size());
     while (thetas.size() % kPairGroup != 0)
         thetas.push_back(thetas.back());
-    RingPairs pairs;
     pairs.pairs = static_cast<int>(thetas.size());
     for (const double theta : thetas) {
-        const double x = std::cos(theta);
-        pairs.x.push_back(x);
-        pairs.x_squared.push_back(x * x);
+        pairs.x.push_back(std::cos(theta));
         pairs.sin.push_back(std::sin(theta));
         pairs.log2_sin.push_back(std::log2(std::sin(static_cast<long double>(theta))));
+    }
+    for (std::size_t p = 0; p < thetas.size(); ++p) {
+        const std::size_t last = p / kPairGroup * kPairGroup + kPairGroup - 1;
+        const double x = pairs.x[p], sine = pairs.sin[p];
+        pairs.argument.push_back(thetas[last] < kPi / 4 ? -sine * sine : x * x);
     }
     return pairs;
 }
@@ -422,13 +450,13 @@ RingPairs makeRings(int rings) {
 }
 
 int ringsFor(int degree) {
-    for (int q = (degree + 2 + 2 * kPairGroup - 1) / (2 * kPairGroup);; ++q) {
-        int rest = q;
-        for (const int p : {2, 3, 5}) {
+    for (int rings = (degree + 2 + kLanes - 1) / kLanes * kLanes;; rings += kLanes) {
+        int rest = rings;
+        for (const int p : {2, 3, 5, 7, 11, 13}) {
             while (rest % p == 0)
                 rest /= p;
         }
-        if (rest == 1) return 2 * kPairGroup * q;
+        if (rest == 1) return rings;
     }
 }
 

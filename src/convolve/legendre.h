@@ -44,27 +44,27 @@ struct Harmonics {
     const Parts& at(int l, int m) const { return coefficients[index(l, m)]; }
 };
 
-/// Ring pairs theta and pi - theta in order of growing sin theta; their number is a multiple of
-/// kPairGroup.
-struct RingPairs {
-    int pairs = 0;
-    LaneVector<double> x;              ///< cos theta of the upper ring
-    LaneVector<double> x_squared;      ///< its square
-    std::vector<double> sin;           ///< sin theta
-    std::vector<long double> log2_sin; ///< log2 sin theta
-};
-
 inline constexpr int kPairGroup = 8;
 
-/// The pairs at the given thetas, ascending in [0, pi / 2]; the last is repeated to fill a group.
+/// Ring pairs theta and pi - theta in order of growing sin theta, filled up to a multiple of
+/// kPairGroup with the last of them.
+struct RingPairs {
+    int used = 0;                      ///< pairs that are wanted
+    int pairs = 0;                     ///< with those that fill up
+    std::vector<double> x;             ///< cos theta of the upper ring
+    std::vector<double> sin;           ///< sin theta
+    std::vector<long double> log2_sin; ///< log2 sin theta
+    LaneVector<double> argument; ///< x^2, or -sin^2 theta in groups near the pole (legendre.cpp)
+};
+
+/// The pairs at the given thetas, one or more, ascending in [0, pi / 2].
 RingPairs makePairs(std::vector<double> thetas);
 
-/// The pairs (r, rings - 1 - r) of rings at theta = pi (r + 0.5) / rings; `rings` is a multiple of
-/// 2 kPairGroup.
+/// The pairs (r, rings - 1 - r) of an even number of rings at theta = pi (r + 0.5) / rings.
 RingPairs makeRings(int rings);
 
-/// Least number of rings, of those makeRings takes, that holds fields of this degree (more than
-/// degree + 1) and twice which is a good length for Fourier transforms.
+/// Least multiple of kLanes that holds fields of this degree as rings (more than degree + 1) and
+/// twice which is a good length for Fourier transforms.
 int ringsFor(int degree);
 
 /// f_lm = sum over rings of weight_r g_m(theta_r) P_lm(theta_r) for `count` orders from `first` and

@@ -34,15 +34,15 @@ std::vector<double> gains(int degree, int samples, bool interpolated) {
 
 /// Rings theta and pi - theta from their even and odd parts: [m][part][ring].
 IBL_MULTIVERSION
-void ringsOfPairs(const double* pairs_of, int orders, int pairs, double* rings_of) {
-    const std::ptrdiff_t half = static_cast<std::ptrdiff_t>(kParts) * pairs;
-    for (int m = 0; m < orders; ++m) {
-        for (int part = 0; part < kParts; ++part) {
-            const double *even = pairs_of + 2 * m * half + part * pairs, *odd = even + half;
-            double *upper = rings_of + 2 * (m * half + part * pairs),
-                   *lower = upper + 2 * pairs - 1;
-            for (int p = 0; p < pairs; ++p) {
-                upper[p] = even[p] + odd[p];
+void ringsOfPairs(const RingPairs& pairs, const double* pairs_of, int orders, double* rings_of) {
+    const int used = pairs.used;
+    const std::ptrdiff_t half = static_cast<std::ptrdiff_t>(kParts) * pairs.pairs;
+    for (int m = 0; m < orders; ++m, pairs_of += 2 * half) {
+        for (int part = 0; part < kParts; ++part, rings_of += 2 * used) {
+            const double *even = pairs_of + part * pairs.pairs, *odd = even + half;
+            double* lower = rings_of + 2 * used - 1;
+            for (int p = 0; p < used; ++p) {
+                rings_of[p] = even[p] + odd[p];
                 lower[-p] = even[p] - odd[p];
             }
         }
@@ -53,8 +53,8 @@ void ringsOfPairs(const double* pairs_of, int orders, int pairs, double* rings_o
 LaneVector<double> synthesiseRingSpectra(const Harmonics& harmonics,
                                          const std::vector<double>& scale, int degree, int rings,
                                          const std::vector<double>& gain, int threads) {
-    const RingPairs pairs = makeRings(ringsFor(degree));
-    const int coarse = 2 * pairs.pairs;
+    const int coarse = ringsFor(degree);
+    const RingPairs pairs = makeRings(coarse);
     ThetaResample plan = makeThetaResample(coarse, rings, degree, RingSource::samples);
     for (int k = -degree; k <= degree; ++k)
         plan.factors[k + degree] *= gain[std::abs(k)];
@@ -63,10 +63,10 @@ LaneVector<double> synthesiseRingSpectra(const Harmonics& harmonics,
     parallelFor(degree / kColumnsAtOnce + 1, threads, [&](std::size_t group) {
         const int first = static_cast<int>(group) * kColumnsAtOnce;
         const int orders = std::min(kColumnsAtOnce, degree + 1 - first);
-        LaneVector<double> even_odd(static_cast<std::size_t>(orders) * kParts * coarse);
-        LaneVector<double> columns(even_odd.size());
+        LaneVector<double> even_odd(static_cast<std::size_t>(orders) * 2 * kParts * pairs.pairs);
+        LaneVector<double> columns(static_cast<std::size_t>(orders) * kParts * coarse);
         legendreSynthesis(pairs, harmonics, scale.data(), degree, first, orders, even_odd.data());
-        ringsOfPairs(even_odd.data(), orders, pairs.pairs, columns.data());
+        ringsOfPairs(pairs, even_odd.data(), orders, columns.data());
         thetaResample(plan, columns.data(), columnsApart(coarse), orders,
                       result.data() + static_cast<std::ptrdiff_t>(first) * kParts * kLanes,
                       together);
@@ -138,6 +138,24 @@ void storeRings(const ComplexLanes* const* channels, int columns, float* out, st
     for (int i = 0; i < columns; ++i, out += 4) {
         storeColumn(r[i].im, g[i].im, b[i].im, out, row);
         storeColumn(r[i].re, g[i].re, b[i].re, out + kLanes * row, row);
+    }
+}
+
+/// kRingsAtOnce rings of one channel, one after another.
+IBL_MULTIVERSION
+void storePlane(const ComplexLanes* values, int columns, double* out) {
+    for (int i = 0; i < columns; i += kLanes) {
+        Lanes upper[kLanes], lower[kLanes];
+        for (int k = 0; k < kLanes; ++k) {
+            upper[k] = values[i + k].im;
+            lower[k] = values[i + k].re;
+        }
+        transpose(upper);
+        transpose(lower);
+        for (int lane = 0; lane < kLanes; ++lane) {
+            __builtin_memcpy(out + lane * columns + i, &upper[lane], sizeof(Lanes));
+            __builtin_memcpy(out + (kLanes + lane) * columns + i, &lower[lane], sizeof(Lanes));
+        }
     }
 }
 
@@ -224,26 +242,19 @@ SmoothField synthesise(const Harmonics& harmonics, const std::vector<double>& sc
     return field;
 }
 
-std::vector<double> synthesiseGrid(const Harmonics& harmonics, const std::vector<double>& scale,
-                                   int degree, int rings, int threads) {
+void synthesiseGrid(const Harmonics& harmonics, const std::vector<double>& scale, int degree,
+                    int rings, int threads, double* out) {
     const int columns = 2 * rings;
     const std::vector<double> gain = gains(degree, columns, false);
     const LaneVector<double> spectra =
         synthesiseRingSpectra(harmonics, scale, degree, rings, gain, threads);
-    std::vector<double> result(static_cast<std::size_t>(3) * rings * columns);
     transformRings(spectra, gain, rings, threads,
                    [&](int first, const ComplexLanes* const* channels) {
-                       for (int ring = 0; ring < kRingsAtOnce; ++ring) {
-                           double* out = result.data() +
-                                         static_cast<std::ptrdiff_t>(first + ring) * 3 * columns;
-                           const int lane = ring % kLanes;
-                           for (int i = 0; i < 3 * columns; ++i) {
-                               const ComplexLanes& value = channels[i % 3][i / 3];
-                               out[i] = ring < kLanes ? value.im[lane] : value.re[lane];
-                           }
+                       for (int channel = 0; channel < 3; ++channel) {
+                           const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(channel) * rings;
+                           storePlane(channels[channel], columns, out + (row + first) * columns);
                        }
                    });
-    return result;
 }
 
 double interpolationError(int l, int degree) {

@@ -45,8 +45,8 @@ bool evaluationIsCheaper(int degree, std::size_t points);
 
 /// Samples of the field on `rings` rings (a multiple of 2 kLanes, more than degree) at theta = pi
 /// (r + 0.5) / rings and twice as many columns at psi = pi i / rings, in double, for tests and
-/// benchmarks: [ring][column][channel].
-std::vector<double> synthesiseGrid(const Harmonics& harmonics, const std::vector<double>& scale,
-                                   int degree, int rings, int threads);
+/// benchmarks: out[channel][ring][column].
+void synthesiseGrid(const Harmonics& harmonics, const std::vector<double>& scale, int degree,
+                    int rings, int threads, double* out);
 
 } // namespace ibl

@@ -3,6 +3,7 @@
 #include "convolve/legendre.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numbers>
 
@@ -93,6 +94,7 @@ void fold(const ThetaResample& plan, const ComplexLanes* circle, int channel, do
 } // namespace
 
 ThetaResample makeThetaResample(int in, int out, int degree, RingSource source) {
+    assert(out % kLanes == 0 && out > degree);
     ThetaResample plan{in, out, degree, source, makePrunedFft(2 * in, degree), makeFftPlan(2 * out),
                        {}};
     plan.factors.resize(static_cast<std::size_t>(2 * degree + 1));

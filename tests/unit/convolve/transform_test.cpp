@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <random>
 
 namespace ibl {
@@ -103,45 +104,168 @@ TEST(Analysis, EnergyAndMeanAreKept) {
     EXPECT_GT(sum, energy * 0.97);
 }
 
-TEST(Synthesis, InvertsAnalysisOfHighDegrees) {
-    // Random coefficients to a degree at which P_mm underflows near the poles; the field is sampled
-    // and compared with the sum of harmonics.
-    const int degree = 300;
-    Harmonics f(degree);
-    std::mt19937 random(3);
+TEST(Fft, PrunedTransformsAreTheWholeOnes) {
+    std::mt19937 random(4);
     std::uniform_real_distribution<double> uniform(-1, 1);
-    for (int m : {0, 1, 2, 150, 299, 300}) {
-        for (int l = std::max(m, degree - 20); l <= degree; ++l) {
-            for (double& part : f.at(l, m))
-                part = uniform(random);
-            if (m == 0) f.at(l, 0)[1] = f.at(l, 0)[3] = f.at(l, 0)[5] = 0;
+    // Few outputs of many, all, and more than there are (they repeat).
+    for (const auto& [n, most] :
+         {std::pair{256, 5}, {96, 47}, {52, 3}, {67, 2}, {16, 40}, {1, 3}}) {
+        const FftPlan whole = makeFftPlan(n);
+        const PrunedFft pruned = makePrunedFft(n, most);
+        LaneVector<ComplexLanes> data(n), slots(n), out(2 * most + 1),
+            work(std::max(fftWorkspace(whole), fftWorkspace(pruned.part)));
+        for (int i = 0; i < n; ++i) {
+            for (int lane = 0; lane < kLanes; ++lane) {
+                data[i].re[lane] = uniform(random);
+                data[i].im[lane] = uniform(random);
+            }
+            slots[pruned.slot(i)] = data[i];
+        }
+        fft(whole, data.data(), work.data());
+        prunedFft(pruned, slots.data(), work.data(), out.data());
+        for (int k = -most; k <= most; ++k) {
+            const ComplexLanes &a = out[k + most], &b = data[((k % n) + n) % n];
+            for (int lane = 0; lane < kLanes; ++lane) {
+                EXPECT_NEAR(a.re[lane], b.re[lane], 1e-13) << n << " " << k;
+                EXPECT_NEAR(a.im[lane], b.im[lane], 1e-13) << n << " " << k;
+            }
         }
     }
-    const SmoothField field = synthesise(f, std::vector<double>(degree + 1, 1.0), degree, 0);
-    double worst = 0, size = 0;
-    // At grid nodes, so that interpolation has no part in it; the first ring is 0.15 degrees from
-    // the pole.
-    for (const int ring : {0, 1, 17, field.rings / 2, field.rings - 1}) {
-        for (const int column : {0, 1, 5, field.columns - 1}) {
-            const double u = static_cast<double>(column) / field.columns;
-            const double v = (ring + 0.5) / field.rings;
-            float value[3];
-            sampleField(field, &u, &v, 1, value);
-            double sum = 0;
-            for (int m : {0, 1, 2, 150, 299, 300}) {
-                for (int l = std::max(m, degree - 20); l <= degree; ++l) {
-                    const double p =
-                        std::sph_legendre(l, m, kPi * v) * (m % 2 ? -1.0 : 1.0) * (m == 0 ? 1 : 2);
-                    const double psi = 2 * kPi * u;
-                    sum +=
-                        p * (f.at(l, m)[0] * std::cos(m * psi) - f.at(l, m)[1] * std::sin(m * psi));
+    EXPECT_GT(makePrunedFft(8192, 100).split, 8); // cost linear in the length
+}
+
+TEST(Analysis, SameBytesForAnyNumberOfThreads) {
+    Image probe(100, 50);
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> uniform(0, 1);
+    for (float& p : probe.pixels)
+        p = uniform(random);
+    const auto run = [&](int threads) {
+        const Harmonics f =
+            analyse(analyseRows(probe, 1, std::numeric_limits<double>::infinity(), 70, threads), 70,
+                    threads);
+        const SmoothField field = synthesise(f, std::vector<double>(71, 1.0), 70, threads);
+        return std::pair(f.coefficients, field.samples);
+    };
+    EXPECT_EQ(run(1), run(3));
+}
+
+/// Random coefficients of a few orders and the highest degrees, and the field's values by the
+/// standard library's functions in long double.
+class RandomField {
+public:
+    explicit RandomField(int degree) : harmonics(degree) {
+        std::mt19937 random(3);
+        std::uniform_real_distribution<double> uniform(-1, 1);
+        for (const int m : orders()) {
+            for (int l = std::max(m, degree - 20); l <= degree; ++l) {
+                for (double& part : harmonics.at(l, m))
+                    part = uniform(random);
+                if (m == 0) {
+                    for (const int part : {1, 3, 5})
+                        harmonics.at(l, 0)[part] = 0;
                 }
             }
-            worst = std::max(worst, std::min(std::abs(value[0] - sum), 1e9));
-            size = std::max(size, std::abs(sum));
         }
     }
-    EXPECT_LT(worst, 2e-6 * size);
+    std::vector<int> orders() const {
+        const int d = harmonics.degree;
+        return {0, 1, 2, d / 2, d - 1, d};
+    }
+    double at(double u, double v, int channel) const {
+        long double sum = 0;
+        for (const int m : orders()) {
+            for (int l = std::max(m, harmonics.degree - 20); l <= harmonics.degree; ++l) {
+                const long double p = std::sph_legendre(l, m, std::numbers::pi_v<long double> * v) *
+                                      (m % 2 ? -1 : 1) * (m == 0 ? 1 : 2);
+                const long double psi = 2 * std::numbers::pi_v<long double> * u;
+                const Parts& f = harmonics.at(l, m);
+                sum += p * (f[2 * channel] * std::cos(m * psi) -
+                            f[2 * channel + 1] * std::sin(m * psi));
+            }
+        }
+        return static_cast<double>(sum);
+    }
+
+    Harmonics harmonics;
+};
+
+TEST(Synthesis, GridsAreTheSumsOfHarmonics) {
+    // To a degree at which P_mm underflows near the poles; the first ring is 0.29 degrees from one.
+    const int degree = 300, rings = 312, columns = 2 * rings;
+    const RandomField field(degree);
+    std::vector<double> grid(std::size_t{3} * rings * columns);
+    synthesiseGrid(field.harmonics, std::vector<double>(degree + 1, 1.0), degree, rings, 0,
+                   grid.data());
+    double worst = 0, size = 0;
+    for (const int ring : {0, 1, 17, rings / 2, rings - 1}) {
+        for (const int column : {0, 1, 5, columns - 1}) {
+            for (int channel = 0; channel < 3; ++channel) {
+                const double exact =
+                    field.at(static_cast<double>(column) / columns, (ring + 0.5) / rings, channel);
+                const double value = grid[(channel * rings + ring) * columns + column];
+                worst = std::max(worst, std::abs(value - exact));
+                size = std::max(size, std::abs(exact));
+            }
+        }
+    }
+    EXPECT_LT(worst, 1e-12 * size);
+}
+
+TEST(Synthesis, PointsAreTheSumsOfHarmonics) {
+    const int degree = 200;
+    const RandomField field(degree);
+    // The poles, the equator, the seam, points of one |cos theta| and one beside a pole.
+    const std::vector<double> u{0, 0.3, 0.7, 1, 0.25, 0.11, 0.6, 0.5},
+        v{0, 1, 0.5, 0.2, 0.8, 0.2, 1e-4, 0.013};
+    std::vector<double> values(3 * u.size());
+    evaluateField(field.harmonics, std::vector<double>(degree + 1, 1.0), degree, u.data(), v.data(),
+                  u.size(), 0, values.data());
+    double size = 0;
+    for (std::size_t i = 0; i < u.size(); ++i)
+        size = std::max(size, std::abs(field.at(u[i], v[i], 0)));
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const std::size_t p = i / 3;
+        EXPECT_NEAR(values[i], field.at(u[p], v[p], static_cast<int>(i % 3)), 1e-12 * size) << i;
+    }
+}
+
+TEST(Synthesis, InterpolationStaysWithinItsBound) {
+    // Single degrees, random over the orders: root mean square error over random points.
+    std::mt19937 random(6);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    const int degree = 100;
+    std::vector<double> u(500), v(500), exact(1500);
+    for (std::size_t i = 0; i < u.size(); ++i) {
+        u[i] = 0.5 + 0.5 * uniform(random);
+        v[i] = 0.5 + 0.5 * uniform(random);
+    }
+    u[0] = 0, u[1] = 1, v[2] = 0, v[3] = 1;
+    for (const int l : {0, 1, 10, 50, 90, 100}) {
+        Harmonics f(degree);
+        for (int m = 0; m <= l; ++m) {
+            for (int part = 0; part < kParts; ++part)
+                f.at(l, m)[part] = m == 0 && part % 2 == 1 ? 0 : uniform(random);
+        }
+        const std::vector<double> ones(degree + 1, 1.0);
+        const SmoothField field = synthesise(f, ones, degree, 0);
+        std::vector<float> sampled(1500);
+        sampleField(field, u.data(), v.data(), 500, sampled.data());
+        evaluateField(f, ones, degree, u.data(), v.data(), 500, 0, exact.data());
+        double error = 0, norm = 0;
+        for (std::size_t i = 0; i < exact.size(); ++i) {
+            error += std::pow(sampled[i] - exact[i], 2);
+            norm += exact[i] * exact[i];
+        }
+        // Rounding of samples whose highest waves stand amplified, and of weights.
+        const double rounding = 3e-7, relative = std::sqrt(error / norm);
+        EXPECT_LT(relative, interpolationError(l, degree) + rounding) << l;
+        if (l == 0) {
+            EXPECT_LT(relative, 2e-7);
+        }
+    }
+    EXPECT_LT(interpolationError(degree, degree), 1e-5);
+    EXPECT_LT(interpolationError(degree / 2, degree), 2e-6);
 }
 
 } // namespace
