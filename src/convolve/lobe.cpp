@@ -163,9 +163,27 @@ double lobeWidth(const Lobe& lobe) {
     return 2 * std::asin(std::sqrt(std::exp2(low)));
 }
 
+double lobeReach(const Lobe& lobe) {
+    // What lies beyond t is below 2 cos^n t of Phong's integral, below 2 cos^n(t/2) of Blinn's.
+    const double n = lobe.parameter, half_pi = 0.5 * kPi;
+    if (lobe.kernel == Kernel::phong && n > 0) return std::acos(std::exp(-40 / n));
+    if (lobe.kernel == Kernel::blinnPhong && n > 0)
+        return std::min(half_pi, 2 * std::acos(std::exp(-40 / n)));
+    return half_pi;
+}
+
 double lobeVariation(const Lobe& lobe) {
-    // Near the horizon Charlie's mass grows as exp(q t), four times its own size over 4 / q.
-    return lobe.kernel == Kernel::charlie ? std::min(0.2, 4 / exponentOf(lobe)) : 0.2;
+    constexpr double kMost = 0.2;
+    switch (lobe.kernel) {
+    case Kernel::phong: // about exp(-n t^2 / 2): two standard deviations
+        return std::min(kMost, 2 / std::sqrt(lobe.parameter + 1));
+    case Kernel::blinnPhong: // exp(-n t^2 / 8)
+        return std::min(kMost, 4 / std::sqrt(lobe.parameter + 1));
+    case Kernel::charlie: // near the horizon exp(q t)
+        return std::min(kMost, 4 / exponentOf(lobe));
+    default:
+        return kMost;
+    }
 }
 
 } // namespace ibl

@@ -85,8 +85,11 @@ private:
 /// Angle (radians) within which half of the lobe's integral lies: its width.
 double lobeWidth(const Lobe& lobe);
 
+/// Angle (radians) beyond which lies less than 1e-17 of the integral: at most pi / 2.
+double lobeReach(const Lobe& lobe);
+
 /// Angle (radians) over which the lobe's mass may be taken as smooth, where that is not in
-/// proportion to the distance from the axis: 0.2, for Charlie down to its ring's thickness.
+/// proportion to the distance from the axis: 0.2 or less.
 double lobeVariation(const Lobe& lobe);
 
 /// Zonal coefficients k_0 .. k_(bands-1) of the lobe normalised to integral 1, so k_0 = 1 and

@@ -154,7 +154,7 @@ PeakSum makePeakSum(const std::vector<Peak>& peaks, int width, int height, const
                 LobeMassBeyond(lobe),
                 lobeWidth(lobe),
                 1 / lobeIntegral(lobe),
-                {0.5 * kPi, lobeVariation(lobe)}};
+                {lobeReach(lobe), lobeVariation(lobe)}};
     for (const Peak& peak : peaks)
         sum.rectangles.push_back(rectangleOf(peak, width, height));
     return sum;

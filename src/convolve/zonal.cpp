@@ -41,13 +41,11 @@ struct RadialLobe {
 RadialLobe radialLobe(const Lobe& lobe) {
     RadialLobe radial{lobe.kernel};
     const double alpha = lobe.parameter * lobe.parameter;
+    radial.end = lobeReach(lobe);
     if (lobe.kernel == Kernel::ggx) {
         radial.alpha = alpha;
     } else if (lobe.kernel == Kernel::blinnPhong) {
         radial.exponent = lobe.parameter;
-        // The mass beyond is below 2 cos^n(t/2).
-        if (lobe.parameter > 0)
-            radial.end = std::min(kHorizon, 2 * std::acos(std::exp(-40 / lobe.parameter)));
     } else {
         radial.exponent = 0.5 / alpha;
         // The mass within is below (q + 2) y^(q+1), y = 1 - cos t.
