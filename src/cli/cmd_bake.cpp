@@ -23,6 +23,7 @@ struct BakeOptions {
     std::string folder;
     int size = 256;
     std::optional<int> levels;
+    RoughnessMap roughness_map = RoughnessMap::linear;
     int lights = 64;
 };
 
@@ -88,7 +89,7 @@ void runBake(const BakeOptions& options) {
     std::vector<PrefilterRequest> requests{
         {{Kernel::lambert, 0}, Layout::faces, std::min(options.size, 64)}};
     for (const PrefilterRequest& level :
-         chainRequests(Kernel::ggx, levels, Layout::faces, options.size)) {
+         chainRequests(Kernel::ggx, levels, options.roughness_map, Layout::faces, options.size)) {
         requests.push_back(level);
     }
     const auto results = runPrefilter(session, latlong, requests, options.quality);
@@ -135,6 +136,7 @@ Command bindBake(CLI::App& root) {
         ->check(CLI::Range(1, 16))
         ->type_name("K")
         ->group("Output");
+    bindRoughnessMap(*app, options->roughness_map)->group("Output");
     app->add_option("--lights", options->lights, "How many median-cut lights, 1 to 65536")
         ->check(CLI::Range(1, 65536))
         ->type_name("N")

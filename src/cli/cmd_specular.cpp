@@ -5,6 +5,8 @@
 
 #include "core/error.h"
 
+#include <algorithm>
+#include <cstdio>
 #include <memory>
 
 namespace ibl {
@@ -21,7 +23,61 @@ struct SpecularOptions {
     std::optional<double> roughness;
     std::optional<double> exponent;
     std::optional<int> levels;
+    RoughnessMap roughness_map = RoughnessMap::linear;
 };
+
+std::vector<std::string> kernelNames() {
+    std::vector<std::string> names;
+    for (const KernelRow& row : kKernels)
+        names.emplace_back(row.name);
+    return names;
+}
+
+std::string kernelHelp() {
+    std::string rows;
+    for (const KernelRow& row : kKernels)
+        rows +=
+            (rows.empty() ? "" : "; ") + std::string(row.name) + ": " + std::string(row.summary);
+    return rows;
+}
+
+/// The kernels of a kind of parameter, with its range: "ggx 0 to 1, charlie 0.05 to 1".
+std::string rangesOf(KernelParameter parameter) {
+    std::string text;
+    for (const KernelRow& row : kKernels) {
+        if (row.parameter != parameter) continue;
+        char range[64];
+        std::snprintf(range, sizeof range, " %g to %g", row.least, row.most);
+        text += (text.empty() ? "" : ", ") + std::string(row.name) + range;
+    }
+    return text;
+}
+
+Kernel kernelFromName(const std::string& name) {
+    return std::ranges::find(kKernels, name, &KernelRow::name)->kernel;
+}
+
+/// The lobe that --kernel and its parameter ask for.
+Lobe lobeOf(const SpecularOptions& options) {
+    const KernelRow& row = kernelRow(options.kernel);
+    const std::string name(row.name);
+    if (row.parameter == KernelParameter::none) {
+        if (options.roughness || options.exponent)
+            throw Error(ExitCode::usage, "--kernel " + name +
+                                             " has no parameter; leave out --roughness and "
+                                             "--exponent");
+        return {options.kernel, 0};
+    }
+    const bool rough = row.parameter == KernelParameter::roughness;
+    const std::optional<double>& parameter = rough ? options.roughness : options.exponent;
+    if (!parameter || (rough ? options.exponent : options.roughness)) {
+        throw Error(ExitCode::usage, "--kernel " + name + " wants " +
+                                         (rough ? "--roughness" : "--exponent") + " or --levels");
+    }
+    const Lobe lobe{options.kernel, *parameter};
+    checkLobe(lobe);
+    return lobe;
+}
 
 std::vector<PrefilterRequest> requestsOf(const SpecularOptions& options) {
     const int size = options.size.value_or(options.to == Layout::latlong ? 512 : 256);
@@ -37,15 +93,10 @@ std::vector<PrefilterRequest> requestsOf(const SpecularOptions& options) {
                 ExitCode::usage,
                 "-: a chain is several files and does not fit standard output; name a file");
         }
-        return chainRequests(options.kernel, *options.levels, options.to, size);
+        return chainRequests(options.kernel, *options.levels, options.roughness_map, options.to,
+                             size);
     }
-    const bool ggx = options.kernel == Kernel::ggx;
-    const std::optional<double>& parameter = ggx ? options.roughness : options.exponent;
-    if (!parameter || (ggx ? options.exponent : options.roughness)) {
-        throw Error(ExitCode::usage, ggx ? "--kernel ggx wants --roughness or --levels"
-                                         : "--kernel phong wants --exponent or --levels");
-    }
-    return {{{options.kernel, *parameter}, options.to, size}};
+    return {{lobeOf(options), options.to, size}};
 }
 
 void runSpecular(const SpecularOptions& options) {
@@ -54,6 +105,7 @@ void runSpecular(const SpecularOptions& options) {
     const std::vector<PrefilterRequest> requests = requestsOf(options);
     const Image latlong = latlongOf(session.readProbe(options.probe), session.threads());
     const auto results = runPrefilter(session, latlong, requests, options.quality);
+    if (options.levels) reportRoughness(session, 0, *options.levels, options.roughness_map);
     session.stage("write", [&] {
         for (std::size_t k = 0; k < results.size(); ++k) {
             const std::string name = options.levels
@@ -74,33 +126,33 @@ Command bindSpecular(CLI::App& root) {
     bindProbe(*app, options->probe);
     app->add_option_function<std::string>(
            "--kernel",
-           [o = options.get()](const std::string& name) {
-               o->kernel = name == "ggx" ? Kernel::ggx : Kernel::phong;
-           },
-           "Lobe: ggx (default) or phong")
-        ->check(CLI::IsMember({"ggx", "phong"}))
+           [o = options.get()](const std::string& name) { o->kernel = kernelFromName(name); },
+           "Lobe (default ggx). " + kernelHelp())
+        ->check(CLI::IsMember(kernelNames()))
         ->type_name("NAME")
         ->group("Lobe");
-    CLI::Option* roughness =
-        app->add_option("--roughness", options->roughness,
-                        "Perceptual roughness of a ggx lobe, 0 to 1 (alpha is its square)")
-            ->check(CLI::Range(0.0, 1.0))
-            ->type_name("R")
-            ->group("Lobe");
-    CLI::Option* exponent =
-        app->add_option("--exponent", options->exponent, "Exponent of a phong lobe cos^n, 0 to 1e6")
-            ->check(CLI::Range(0.0, 1e6))
-            ->type_name("N")
+    CLI::Option* roughness = app->add_option("--roughness", options->roughness,
+                                             "Perceptual roughness (alpha is its square): " +
+                                                 rangesOf(KernelParameter::roughness))
+                                 ->check(CLI::Range(0.0, 1.0))
+                                 ->type_name("R")
+                                 ->group("Lobe");
+    CLI::Option* exponent = app->add_option("--exponent", options->exponent,
+                                            "Exponent: " + rangesOf(KernelParameter::exponent))
+                                ->check(CLI::Range(0.0, 1e6))
+                                ->type_name("N")
+                                ->excludes(roughness)
+                                ->group("Lobe");
+    CLI::Option* levels =
+        app->add_option("--levels", options->levels,
+                        "A chain: roughness 0 (the probe, area-filtered) to 1 in K levels, each "
+                        "half the size of the one before; exponents are 2 / roughness^4 - 2")
+            ->check(CLI::Range(1, 16))
+            ->type_name("K")
             ->excludes(roughness)
+            ->excludes(exponent)
             ->group("Lobe");
-    app->add_option("--levels", options->levels,
-                    "A chain: roughness 0 to 1 in K levels, each half the size of the one before; "
-                    "for phong the exponent is 2 / roughness^4 - 2")
-        ->check(CLI::Range(1, 16))
-        ->type_name("K")
-        ->excludes(roughness)
-        ->excludes(exponent)
-        ->group("Lobe");
+    bindRoughnessMap(*app, options->roughness_map)->needs(levels);
     bindImageOutput(*app, options->output);
     bindTarget(*app, options->to, options->size, "256; lat-long 512");
     bindQuality(*app, options->quality);

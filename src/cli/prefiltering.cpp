@@ -30,19 +30,10 @@ nlohmann::ordered_json jsonOf(const PrefilterRequest& request, const PrefilterRe
     nlohmann::ordered_json json;
     json["layout"] = layoutName(request.layout);
     json["size"] = request.size;
-    switch (request.lobe.kernel) {
-    case Kernel::lambert:
-        json["kernel"] = "lambert";
-        break;
-    case Kernel::ggx:
-        json["kernel"] = "ggx";
-        json["roughness"] = request.lobe.parameter;
-        break;
-    case Kernel::phong:
-        json["kernel"] = "phong";
-        json["exponent"] = request.lobe.parameter;
-        break;
-    }
+    const KernelRow& kernel = kernelRow(request.lobe.kernel);
+    json["kernel"] = kernel.name;
+    if (kernel.parameter == KernelParameter::roughness) json["roughness"] = request.lobe.parameter;
+    if (kernel.parameter == KernelParameter::exponent) json["exponent"] = request.lobe.parameter;
     json["error_bound"] = result.error_bound;
     json["error_estimate"] = result.error_estimate;
     json["band_limit"] = result.band_limit;
@@ -106,18 +97,71 @@ int maxLevels(int size) {
     return static_cast<int>(std::bit_width(static_cast<unsigned>(size)));
 }
 
-std::vector<PrefilterRequest> chainRequests(Kernel kernel, int levels, Layout layout, int size) {
-    std::vector<PrefilterRequest> requests;
-    for (int k = 0; k < levels; ++k) {
-        const double roughness = levels == 1 ? 0 : static_cast<double>(k) / (levels - 1);
-        PrefilterRequest request{{Kernel::ggx, roughness}, layout, size >> k};
-        if (kernel == Kernel::phong && k > 0) {
-            const double exponent = 2 / std::pow(roughness, 4) - 2;
-            request.lobe = {Kernel::phong, std::clamp(exponent, 0.0, 1e6)};
+CLI::Option* bindRoughnessMap(CLI::App& app, RoughnessMap& map) {
+    std::vector<std::string> names;
+    std::string rows;
+    for (const RoughnessMapRow& row : kRoughnessMaps) {
+        names.emplace_back(row.name);
+        rows += (rows.empty() ? "" : "; ") + names.back() + ": " + std::string(row.formula);
+    }
+    return app
+        .add_option_function<std::string>(
+            "--roughness-map",
+            [&map](const std::string& name) {
+                map = std::ranges::find(kRoughnessMaps, name, &RoughnessMapRow::name)->map;
+            },
+            "Roughness of level k of the chain, lod = k / (K - 1) (default linear). " + rows)
+        ->check(CLI::IsMember(names))
+        ->type_name("NAME")
+        ->group("Lobe");
+}
+
+double levelRoughness(RoughnessMap map, int k, int levels) {
+    if (levels == 1) return 0;
+    const double lod = static_cast<double>(k) / (levels - 1);
+    switch (map) {
+    case RoughnessMap::square:
+        return lod * lod;
+    case RoughnessMap::filament:
+        return 1 - std::sqrt(1 - lod);
+    case RoughnessMap::linear:
+        break;
+    }
+    return lod;
+}
+
+std::vector<PrefilterRequest> chainRequests(Kernel kernel, int levels, RoughnessMap map,
+                                            Layout layout, int size) {
+    const KernelRow& row = kernelRow(kernel);
+    if (row.parameter == KernelParameter::none) {
+        throw Error(ExitCode::usage, "--kernel " + std::string(row.name) +
+                                         " has no roughness to make a chain of; leave out "
+                                         "--levels");
+    }
+    std::vector<PrefilterRequest> requests{{{Kernel::ggx, 0}, layout, size}};
+    for (int k = 1; k < levels; ++k) {
+        const double roughness = levelRoughness(map, k, levels);
+        Lobe lobe{kernel, roughness};
+        if (row.parameter == KernelParameter::exponent) {
+            lobe.parameter = std::clamp(2 / std::pow(roughness, 4) - 2, row.least, row.most);
+        } else if (roughness < row.least) {
+            char text[160];
+            std::snprintf(text, sizeof text,
+                          "--levels %d: level %d has roughness %.3g and %s begins at %g; ask for "
+                          "fewer levels or another --roughness-map",
+                          levels, k, roughness, std::string(row.name).c_str(), row.least);
+            throw Error(ExitCode::usage, text);
         }
-        requests.push_back(request);
+        requests.push_back({lobe, layout, size >> k});
     }
     return requests;
+}
+
+void reportRoughness(Session& session, std::size_t first, int levels, RoughnessMap map) {
+    for (int k = 0; k < levels; ++k) {
+        session.results()["maps"][first + static_cast<std::size_t>(k)]["roughness"] =
+            levelRoughness(map, k, levels);
+    }
 }
 
 std::string levelName(const std::string& path, int level) {

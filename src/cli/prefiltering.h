@@ -5,9 +5,11 @@
 
 #include "convolve/prefilter.h"
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace ibl {
@@ -26,10 +28,39 @@ std::vector<PrefilterResult> runPrefilter(Session& session, const Image& latlong
                                           std::span<const PrefilterRequest> requests,
                                           const QualityOptions& quality);
 
-/// The lobes of a specular chain of `levels`: roughness k / (levels - 1) (0 for a single level),
-/// for Phong as the exponent 2 / alpha^2 - 2, alpha = roughness^2, at which the widths of the two
-/// lobes agree (Walter et al. 2007), at most 1e6. Level k has the size `size >> k`.
-std::vector<PrefilterRequest> chainRequests(Kernel kernel, int levels, Layout layout, int size);
+/// How roughness goes with lod = k / (levels - 1) down a chain.
+enum class RoughnessMap { linear, square, filament };
+
+/// `--roughness-map` and its help are made from these rows.
+struct RoughnessMapRow {
+    RoughnessMap map;
+    std::string_view name;
+    std::string_view formula;
+};
+
+inline constexpr std::array<RoughnessMapRow, 3> kRoughnessMaps{{
+    {RoughnessMap::linear, "linear", "lod"},
+    {RoughnessMap::square, "square", "lod^2"},
+    {RoughnessMap::filament, "filament", "1 - sqrt(1 - lod)"},
+}};
+
+/// `--roughness-map`.
+CLI::Option* bindRoughnessMap(CLI::App& app, RoughnessMap& map);
+
+/// Roughness of level k; 0 for a single level.
+double levelRoughness(RoughnessMap map, int k, int levels);
+
+/// The lobes of a specular chain of `levels`: level 0 the area-filtered probe (as roughness 0 of
+/// GGX is), then the kernel at levelRoughness; for Phong and Blinn-Phong as the exponent
+/// 2 / alpha^2 - 2, alpha = roughness^2, at which the widths of GGX's and Blinn-Phong's
+/// distributions agree (Walter et al. 2007), at most 1e6. Level k has the size `size >> k`. Throws
+/// Error (usage) for Lambert, which has no roughness, and where a level's is out of the kernel's
+/// range.
+std::vector<PrefilterRequest> chainRequests(Kernel kernel, int levels, RoughnessMap map,
+                                            Layout layout, int size);
+
+/// Says in the report which roughness each level stands for; level 0 is the map `first`.
+void reportRoughness(Session& session, std::size_t first, int levels, RoughnessMap map);
 
 /// The name of level k of a chain: dir/p.exr gives dir/p_m0.exr.
 std::string levelName(const std::string& path, int level);

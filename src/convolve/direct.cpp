@@ -42,7 +42,7 @@ double DirectLobe::operator()(double h) const {
 }
 
 DirectLobe makeDirectLobe(const Lobe& lobe) {
-    return {LobeMassBeyond(lobe), {0.5 * kPi, 0.2}};
+    return {LobeMassBeyond(lobe), {lobeReach(lobe), lobeVariation(lobe)}};
 }
 
 void addDirect(const DirectLobe& lobe, const Image& probe, double scale, const Axis& axis,

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 
 namespace ibl {
@@ -23,7 +24,7 @@ double alphaOf(const Lobe& lobe) {
 ///     J(c) = int_0^c (1 - 2h) / (alpha^2 + beta h)^2 dh = [(1 + 2 alpha^2/beta) c / (alpha^2 s)]
 ///            - (2 / beta^2) log(s / alpha^2),   s = alpha^2 + beta c,
 ///
-/// and for beta -> 0 that cancels; there (alpha near 1) the integrand is smooth and eight Gauss
+/// and for beta -> 0 that cancels; there (alpha near 1) the integrand is smooth and sixteen Gauss
 /// points are exact to rounding.
 double ggxCapIntegral(double a2, double from, double to) {
     const double beta = 1 - a2;
@@ -42,86 +43,51 @@ double ggxCapIntegral(double a2, double from, double to) {
     return 4 * a2 * (rational - 2 / (beta * beta) * std::log1p(beta * (to - from) / s0));
 }
 
-/// Panels of 16 Gauss points in t over [0, pi/2]: none wider than its distance from the lobe's
-/// poles at t = +-2i alpha (there the rule gains a digit a point) nor than 12 / bands (about two
-/// periods of P_l).
-std::vector<double> ggxPanels(double alpha, int bands) {
-    std::vector<double> edges{0.0};
-    const double half_pi = 0.5 * kPi;
-    while (edges.back() < half_pi) {
-        const double t = edges.back();
-        const double width = std::min({t + alpha, 12.0 / bands, 0.4});
-        edges.push_back(t + 1.3 * width > half_pi ? half_pi : t + width);
-    }
-    return edges;
+/// Blinn-Phong in u = 1 - h = cos^2(t/2), m = n/2: K = u^m (2u - 1), and
+///
+///     int u^m (2u - 1) du = u^(m+1) (m - 2h (m + 1)) / ((m + 1) (m + 2)),
+///
+/// which at the horizon is -2^-(m+1) / ((m + 1) (m + 2)). Times (m + 1) (m + 2), the integral from
+/// h to the horizon is this.
+double blinnPhongBeyond(double m, double h) {
+    return std::exp((m + 1) * std::log1p(-h)) * (m - 2 * h * (m + 1)) + std::exp2(-(m + 1));
 }
 
-std::vector<double> ggxCoefficients(const Lobe& lobe, int bands) {
-    const double alpha = alphaOf(lobe);
-    const GaussRule& rule = gaussRule(16);
-    const std::vector<double> edges = ggxPanels(alpha, bands);
-    std::vector<double> x, weight;
-    for (std::size_t p = 0; p + 1 < edges.size(); ++p) {
-        const double half = 0.5 * (edges[p + 1] - edges[p]), mid = 0.5 * (edges[p + 1] + edges[p]);
-        for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
-            const double t = mid + half * rule.nodes[i];
-            const double s = std::sin(0.5 * t);
-            const double d = alpha * alpha + (1 - alpha * alpha) * s * s;
-            x.push_back(std::cos(t));
-            weight.push_back(rule.weights[i] * half * std::sin(t) * std::cos(t) / (d * d));
-        }
-    }
-    // Bonnet's recurrence, all nodes at once.
-    const std::size_t n = x.size();
-    std::vector<double> previous(n, 0.0), current(n, 1.0), k(static_cast<std::size_t>(bands));
-    for (int l = 0; l < bands; ++l) {
-        const double a = (2.0 * l + 1) / (l + 1), b = static_cast<double>(l) / (l + 1);
-        double sum = 0;
-        for (std::size_t i = 0; i < n; ++i)
-            sum += weight[i] * current[i];
-        for (std::size_t i = 0; i < n; ++i) {
-            const double next = a * x[i] * current[i] - b * previous[i];
-            previous[i] = current[i];
-            current[i] = next;
-        }
-        k[static_cast<std::size_t>(l)] = sum;
-    }
-    const double norm = 1 / k[0];
-    for (double& v : k)
-        v *= norm;
-    return k;
+/// Charlie in y = 2h = 1 - cos t, q = 1 / (2 alpha): K = y^q (1 - y), and
+///
+///     int_0^y y^q (1 - y) dy = y^(q+1) (q + 2 - (q + 1) y) / ((q + 1) (q + 2)).
+///
+/// The part of it beyond y is one minus this over its value at 1.
+double charlieBeyond(double q, double h) {
+    const double y = 2 * h;
+    return 1 - std::pow(y, q + 1) * (q + 2 - (q + 1) * y);
 }
 
-/// int_0^1 x^n P_l = int_0^1 x^n P_(l-2) (n - l + 2) / (n + l + 1) (Gradshteyn and Ryzhik 7.231),
-/// exact for every real n; Lambert is n = 1.
-std::vector<double> cosinePowerCoefficients(double n, int bands) {
-    std::vector<double> k(static_cast<std::size_t>(bands));
-    for (int l = 0; l < bands; ++l) {
-        const std::size_t i = static_cast<std::size_t>(l);
-        if (l == 0)
-            k[i] = 1;
-        else if (l == 1)
-            k[i] = (n + 1) / (n + 2);
-        else
-            k[i] = k[i - 2] * (n - l + 2) / (n + l + 1);
-    }
-    return k;
-}
-
+/// The exponent of cos t, of cos^2(t/2) and of 1 - cos t.
 double exponentOf(const Lobe& lobe) {
-    return lobe.kernel == Kernel::lambert ? 1 : lobe.parameter;
+    switch (lobe.kernel) {
+    case Kernel::phong:
+        return lobe.parameter;
+    case Kernel::blinnPhong:
+        return 0.5 * lobe.parameter;
+    case Kernel::charlie:
+        return 0.5 / alphaOf(lobe);
+    default:
+        return 1;
+    }
 }
 
 } // namespace
 
 void checkLobe(const Lobe& lobe) {
-    const double p = lobe.parameter;
-    if (lobe.kernel == Kernel::ggx && !(p >= 0 && p <= 1)) {
-        throw Error(ExitCode::usage, "roughness: not in [0, 1]; give a value from 0 to 1");
-    }
-    if (lobe.kernel == Kernel::phong && !(p >= 0 && p <= 1e6)) {
-        throw Error(ExitCode::usage, "exponent: not in [0, 1e6]; give a value from 0 to 1000000");
-    }
+    const KernelRow& row = kernelRow(lobe.kernel);
+    if (row.parameter == KernelParameter::none) return;
+    if (lobe.parameter >= row.least && lobe.parameter <= row.most) return;
+    char text[160];
+    std::snprintf(text, sizeof text, "%s: not in [%g, %g], which %s takes; give a value in it",
+                  row.parameter == KernelParameter::roughness ? "roughness" : "exponent", row.least,
+                  row.most, std::string(row.name).c_str());
+    throw Error(ExitCode::usage, text);
 }
 
 bool isMirror(const Lobe& lobe) {
@@ -130,33 +96,60 @@ bool isMirror(const Lobe& lobe) {
 
 double lobeValue(const Lobe& lobe, double cos_t) {
     if (cos_t <= 0) return 0;
-    if (lobe.kernel == Kernel::ggx) {
+    switch (lobe.kernel) {
+    case Kernel::ggx: {
         const double a2 = alphaOf(lobe) * alphaOf(lobe);
         const double d = a2 + (1 - a2) * 0.5 * (1 - cos_t);
         return a2 / (kPi * d * d) * cos_t;
     }
-    return std::pow(cos_t, exponentOf(lobe));
+    case Kernel::blinnPhong:
+        return std::pow(0.5 + 0.5 * cos_t, exponentOf(lobe)) * cos_t;
+    case Kernel::charlie:
+        return std::pow(std::max(0.0, 1 - cos_t), exponentOf(lobe)) * cos_t;
+    case Kernel::phong:
+        return std::pow(cos_t, lobe.parameter);
+    case Kernel::lambert:
+        break;
+    }
+    return cos_t;
 }
 
 double lobeIntegral(const Lobe& lobe) {
-    if (lobe.kernel == Kernel::ggx) return ggxCapIntegral(alphaOf(lobe) * alphaOf(lobe), 0, 0.5);
-    return 2 * kPi / (exponentOf(lobe) + 1);
+    const double e = exponentOf(lobe);
+    switch (lobe.kernel) {
+    case Kernel::ggx:
+        return ggxCapIntegral(alphaOf(lobe) * alphaOf(lobe), 0, 0.5);
+    case Kernel::blinnPhong:
+        return 4 * kPi * blinnPhongBeyond(e, 0) / ((e + 1) * (e + 2));
+    case Kernel::charlie:
+        return 2 * kPi / ((e + 1) * (e + 2));
+    default:
+        return 2 * kPi / (e + 1);
+    }
 }
 
-LobeMassBeyond::LobeMassBeyond(const Lobe& lobe) : kernel_(lobe.kernel) {
+LobeMassBeyond::LobeMassBeyond(const Lobe& lobe)
+    : kernel_(lobe.kernel), exponent_(exponentOf(lobe)) {
+    if (kernel_ == Kernel::blinnPhong) scale_ = 1 / blinnPhongBeyond(exponent_, 0);
     if (kernel_ == Kernel::ggx) {
         alpha_squared_ = alphaOf(lobe) * alphaOf(lobe);
         scale_ = isMirror(lobe) ? 1 : 1 / lobeIntegral(lobe);
-    } else {
-        exponent_ = exponentOf(lobe);
     }
 }
 
 double LobeMassBeyond::operator()(double h) const {
     if (h >= 0.5) return 0;
-    if (kernel_ != Kernel::ggx) return std::exp((exponent_ + 1) * std::log1p(-2 * h));
-    if (alpha_squared_ < 1e-20) return h > 0 ? 0 : 1;
-    return scale_ * ggxCapIntegral(alpha_squared_, h, 0.5);
+    switch (kernel_) {
+    case Kernel::ggx:
+        if (alpha_squared_ < 1e-20) return h > 0 ? 0 : 1;
+        return scale_ * ggxCapIntegral(alpha_squared_, h, 0.5);
+    case Kernel::blinnPhong:
+        return scale_ * blinnPhongBeyond(exponent_, h);
+    case Kernel::charlie:
+        return charlieBeyond(exponent_, h);
+    default: // of cos^n t: cos^(n+1) t
+        return std::exp((exponent_ + 1) * std::log1p(-2 * h));
+    }
 }
 
 double lobeWidth(const Lobe& lobe) {
@@ -170,10 +163,27 @@ double lobeWidth(const Lobe& lobe) {
     return 2 * std::asin(std::sqrt(std::exp2(low)));
 }
 
-std::vector<double> zonalCoefficients(const Lobe& lobe, int bands) {
-    if (isMirror(lobe)) return std::vector<double>(static_cast<std::size_t>(bands), 1.0);
-    if (lobe.kernel == Kernel::ggx) return ggxCoefficients(lobe, bands);
-    return cosinePowerCoefficients(exponentOf(lobe), bands);
+double lobeReach(const Lobe& lobe) {
+    // What lies beyond t is below 2 cos^n t of Phong's integral, below 2 cos^n(t/2) of Blinn's.
+    const double n = lobe.parameter, half_pi = 0.5 * kPi;
+    if (lobe.kernel == Kernel::phong && n > 0) return std::acos(std::exp(-40 / n));
+    if (lobe.kernel == Kernel::blinnPhong && n > 0)
+        return std::min(half_pi, 2 * std::acos(std::exp(-40 / n)));
+    return half_pi;
+}
+
+double lobeVariation(const Lobe& lobe) {
+    constexpr double kMost = 0.2;
+    switch (lobe.kernel) {
+    case Kernel::phong: // about exp(-n t^2 / 2): two standard deviations
+        return std::min(kMost, 2 / std::sqrt(lobe.parameter + 1));
+    case Kernel::blinnPhong: // exp(-n t^2 / 8)
+        return std::min(kMost, 4 / std::sqrt(lobe.parameter + 1));
+    case Kernel::charlie: // near the horizon exp(q t)
+        return std::min(kMost, 4 / exponentOf(lobe));
+    default:
+        return kMost;
+    }
 }
 
 } // namespace ibl

@@ -17,13 +17,15 @@ double magnitude(const float* pixel, double scale) {
                              std::abs(double{pixel[2]})});
 }
 
-constexpr Disc kHemisphere{0.5 * kPi, 0.2};
-
 /// Angle over which the lobe changes by its own size, t from its axis: as far as its horizon or its
-/// poles in the complex plane.
+/// poles in the complex plane. Charlie, (1 - cos t)^q cos t, has its singularity on the axis and
+/// grows by q cot(t/2) dt.
 double scaleAt(const Lobe& lobe, double width, double t) {
     const double to_horizon = std::abs(0.5 * kPi - t);
-    const double smooth = lobe.kernel == Kernel::ggx ? std::max(width, 0.5 * t) : width;
+    double smooth = width;
+    if (lobe.kernel == Kernel::ggx) smooth = std::max(width, 0.5 * t);
+    if (lobe.kernel == Kernel::charlie)
+        smooth = std::min(0.5 * t, 2 * lobe.parameter * lobe.parameter * std::tan(0.5 * t));
     return std::min(smooth, to_horizon);
 }
 
@@ -146,7 +148,13 @@ V3d polarDirection(double theta, double psi) {
 }
 
 PeakSum makePeakSum(const std::vector<Peak>& peaks, int width, int height, const Lobe& lobe) {
-    PeakSum sum{peaks, {}, lobe, LobeMassBeyond(lobe), lobeWidth(lobe), 1 / lobeIntegral(lobe)};
+    PeakSum sum{peaks,
+                {},
+                lobe,
+                LobeMassBeyond(lobe),
+                lobeWidth(lobe),
+                1 / lobeIntegral(lobe),
+                {lobeReach(lobe), lobeVariation(lobe)}};
     for (const Peak& peak : peaks)
         sum.rectangles.push_back(rectangleOf(peak, width, height));
     return sum;
@@ -161,7 +169,7 @@ double peakMass(const PeakSum& sum, std::size_t p, const Axis& axis, const V3d& 
     const double scale = scaleAt(sum.lobe, sum.width, t);
     if (r.size > 0.5 * scale) {
         const auto q = [&](double h) { return -sum.mass_beyond(h); };
-        return rectangleMass(q, 1, kHemisphere, axis, r.edges);
+        return rectangleMass(q, 1, sum.disc, axis, r.edges);
     }
     const PixelPoints& points = r.size > 0.1 * scale ? r.fine : r.coarse;
     double mass = 0;

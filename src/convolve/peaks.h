@@ -76,6 +76,7 @@ struct PeakSum {
     LobeMassBeyond mass_beyond;
     double width; ///< lobeWidth
     double norm;  ///< 1 / integral of the lobe
+    Disc disc;    ///< where the lobe is not zero
 };
 
 /// `width` x `height` is the probe's size.

@@ -8,33 +8,6 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-struct Rule {
-    std::vector<double> x, w;
-};
-
-/// Gauss-Legendre on [0, 1], by bisection-safe Newton steps.
-Rule gauss(int n) {
-    Rule rule;
-    for (int i = 0; i < n; ++i) {
-        double x = std::cos(kPi * (i + 0.75) / (n + 0.5)), dp = 0;
-        for (int it = 0; it < 50; ++it) {
-            double p = 1, q = 0;
-            for (int k = 1; k <= n; ++k) {
-                const double r = q;
-                q = p;
-                p = ((2 * k - 1) * x * q - (k - 1) * r) / k;
-            }
-            dp = n * (x * p - q) / (x * x - 1);
-            const double step = p / dp;
-            x -= step;
-            if (std::abs(step) < 1e-15) break;
-        }
-        rule.x.push_back(0.5 * (1 + x));
-        rule.w.push_back(1 / ((1 - x * x) * dp * dp));
-    }
-    return rule;
-}
-
 /// All pixels against all directions with n x n points a pixel.
 std::vector<std::array<double, 3>> sums(const Image& probe, const LobeFunction& lobe,
                                         const std::vector<Direction>& directions, int n) {
@@ -126,6 +99,28 @@ double divided(const Rectangle& r, const LobeFunction& lobe, double width, const
 
 } // namespace
 
+Rule gauss(int n) {
+    Rule rule;
+    for (int i = 0; i < n; ++i) {
+        double x = std::cos(kPi * (i + 0.75) / (n + 0.5)), dp = 0;
+        for (int it = 0; it < 50; ++it) {
+            double p = 1, q = 0;
+            for (int k = 1; k <= n; ++k) {
+                const double r = q;
+                q = p;
+                p = ((2 * k - 1) * x * q - (k - 1) * r) / k;
+            }
+            dp = n * (x * p - q) / (x * x - 1);
+            const double step = p / dp;
+            x -= step;
+            if (std::abs(step) < 1e-15) break;
+        }
+        rule.x.push_back(0.5 * (1 + x));
+        rule.w.push_back(1 / ((1 - x * x) * dp * dp));
+    }
+    return rule;
+}
+
 LobeFunction lambert() {
     return [](double c) { return c; };
 }
@@ -141,6 +136,15 @@ LobeFunction ggx(double roughness) {
 
 LobeFunction phong(double exponent) {
     return [exponent](double c) { return std::pow(c, exponent); };
+}
+
+LobeFunction blinnPhong(double exponent) {
+    return [exponent](double c) { return std::pow(std::cos(0.5 * std::acos(c)), exponent) * c; };
+}
+
+LobeFunction charlie(double roughness) {
+    const double alpha = roughness * roughness;
+    return [alpha](double c) { return std::pow(std::sqrt(0.5 * (1 - c)), 1 / alpha) * c; };
 }
 
 double integral(const LobeFunction& lobe) {

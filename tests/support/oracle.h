@@ -15,6 +15,14 @@ using LobeFunction = std::function<double(double cos_t)>;
 LobeFunction lambert();
 LobeFunction ggx(double roughness);
 LobeFunction phong(double exponent);
+LobeFunction blinnPhong(double exponent);
+LobeFunction charlie(double roughness);
+
+/// Gauss-Legendre points on [0, 1] and weights that sum to 1.
+struct Rule {
+    std::vector<double> x, w;
+};
+Rule gauss(int n);
 
 struct Direction {
     double x, y, z;

@@ -57,6 +57,9 @@ TEST(Direct, SumIsTheLobesMean) {
     cases.push_back({{Kernel::lambert, 0}, oracle::lambert(), 0.1});
     cases.push_back({{Kernel::ggx, 0.5}, oracle::ggx(0.5), 0.1});
     cases.push_back({{Kernel::ggx, 1}, oracle::ggx(1), 0.1});
+    cases.push_back({{Kernel::blinnPhong, 12}, oracle::blinnPhong(12), 0.1});
+    for (const double r : {0.05, 1.0})
+        cases.push_back({{Kernel::charlie, r}, oracle::charlie(r), 0.1});
     for (const NarrowCase& c : cases) {
         const DirectLobe direct = makeDirectLobe(c.lobe);
         for (const auto& [u, v] : kPlaces) {

@@ -16,8 +16,18 @@ namespace ibl {
 namespace {
 
 oracle::LobeFunction functionOf(const Lobe& lobe) {
-    if (lobe.kernel == Kernel::ggx) return oracle::ggx(lobe.parameter);
-    return lobe.kernel == Kernel::phong ? oracle::phong(lobe.parameter) : oracle::lambert();
+    switch (lobe.kernel) {
+    case Kernel::ggx:
+        return oracle::ggx(lobe.parameter);
+    case Kernel::phong:
+        return oracle::phong(lobe.parameter);
+    case Kernel::blinnPhong:
+        return oracle::blinnPhong(lobe.parameter);
+    case Kernel::charlie:
+        return oracle::charlie(lobe.parameter);
+    default:
+        return oracle::lambert();
+    }
 }
 
 PrefilterResult filter(const Image& probe, const Lobe& lobe, Layout layout, int size,
@@ -106,8 +116,11 @@ Difference compare(const PrefilterResult& result, const Image& probe, const Lobe
     return difference;
 }
 
-const Lobe kWideLobes[] = {{Kernel::lambert, 0}, {Kernel::ggx, 0.25}, {Kernel::ggx, 0.5},
-                           {Kernel::ggx, 1},     {Kernel::phong, 5},  {Kernel::phong, 100}};
+const Lobe kWideLobes[] = {{Kernel::lambert, 0},     {Kernel::ggx, 0.25},
+                           {Kernel::ggx, 0.5},       {Kernel::ggx, 1},
+                           {Kernel::phong, 5},       {Kernel::phong, 100},
+                           {Kernel::blinnPhong, 20}, {Kernel::blinnPhong, 400},
+                           {Kernel::charlie, 0.4},   {Kernel::charlie, 1}};
 
 TEST(Prefilter, KeepsTheAskedErrorAndSaysItsOwn) {
     const Image probe = scene(48, 24);
@@ -153,8 +166,12 @@ TEST(Prefilter, FurnaceForEveryKernelRoughnessAndSize) {
     std::vector<Lobe> lobes(std::begin(kWideLobes), std::end(kWideLobes));
     for (const double r : {0.0, 0.001, 0.01, 0.05, 0.1, 0.125})
         lobes.push_back({Kernel::ggx, r});
-    for (const double n : {0.0, 1e4, 1e6})
+    for (const double n : {0.0, 1e4, 1e6}) {
         lobes.push_back({Kernel::phong, n});
+        lobes.push_back({Kernel::blinnPhong, n});
+    }
+    for (const double r : {0.05, 0.125})
+        lobes.push_back({Kernel::charlie, r});
     for (const auto& [w, h] : {std::pair{1, 1}, {7, 5}, {32, 16}}) {
         const Image probe = constant(w, h, 0.7f);
         for (const Lobe& lobe : lobes) {
