@@ -83,7 +83,8 @@ void runBake(const BakeOptions& options) {
                                          std::to_string(maxLevels(options.size)) +
                                          " levels; ask for fewer");
     }
-    const Image latlong = latlongOf(session.readProbe(options.probe), session.threads());
+    const Panorama latlong{Layout::latlong,
+                           latlongOf(session.readProbe(options.probe), session.threads())};
 
     // Irradiance holds nothing finer than a 64-texel face resolves.
     std::vector<PrefilterRequest> requests{
@@ -93,8 +94,8 @@ void runBake(const BakeOptions& options) {
         requests.push_back(level);
     }
     const auto results = runPrefilter(session, latlong, requests, options.quality);
-    const std::vector<Light> lights =
-        session.stage("cut", [&] { return medianCut(latlong, options.lights, session.threads()); });
+    const std::vector<Light> lights = session.stage(
+        "cut", [&] { return medianCut(latlong.image, options.lights, session.threads()); });
 
     BakeFolder folder(options.folder);
     WriteOptions how;

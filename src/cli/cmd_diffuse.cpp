@@ -20,7 +20,8 @@ struct DiffuseOptions {
 void runDiffuse(const DiffuseOptions& options) {
     Session session("diffuse", options.common);
     const WriteOptions how = writeOptions(options.output, options.common);
-    const Image latlong = latlongOf(session.readProbe(options.probe), session.threads());
+    const Panorama latlong{Layout::latlong,
+                           latlongOf(session.readProbe(options.probe), session.threads())};
     const bool is_latlong = options.to == Layout::latlong;
     const PrefilterRequest request{
         {Kernel::lambert, 0}, options.to, options.size.value_or(is_latlong ? 128 : 64)};

@@ -160,7 +160,7 @@ void runRender(const RenderOptions& options) {
 
     Panorama diffuse;
     if (needsDiffuse(scene.material)) {
-        Image latlong = latlongOf(Panorama(probe), session.threads());
+        const Panorama latlong{Layout::latlong, latlongOf(Panorama(probe), session.threads())};
         const PrefilterRequest request{{Kernel::lambert, 0}, Layout::faces, 64};
         diffuse = std::move(runPrefilter(session, latlong, {&request, 1}, {})[0].map);
         scene.diffuse = &diffuse;

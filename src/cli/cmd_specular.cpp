@@ -103,7 +103,8 @@ void runSpecular(const SpecularOptions& options) {
     Session session("specular", options.common);
     const WriteOptions how = writeOptions(options.output, options.common);
     const std::vector<PrefilterRequest> requests = requestsOf(options);
-    const Image latlong = latlongOf(session.readProbe(options.probe), session.threads());
+    const Panorama latlong{Layout::latlong,
+                           latlongOf(session.readProbe(options.probe), session.threads())};
     const auto results = runPrefilter(session, latlong, requests, options.quality);
     if (options.levels) reportRoughness(session, 0, *options.levels, options.roughness_map);
     session.stage("write", [&] {

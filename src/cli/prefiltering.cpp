@@ -36,6 +36,7 @@ nlohmann::ordered_json jsonOf(const PrefilterRequest& request, const PrefilterRe
     if (kernel.parameter == KernelParameter::exponent) json["exponent"] = request.lobe.parameter;
     json["error_bound"] = result.error_bound;
     json["error_estimate"] = result.error_estimate;
+    if (result.worst_bound) json["worst_texel_bound"] = *result.worst_bound;
     json["band_limit"] = result.band_limit;
     json["peaks_split"] = result.peaks_split;
     json["seconds"] = {{"analysis", result.seconds_analysis},
@@ -45,12 +46,14 @@ nlohmann::ordered_json jsonOf(const PrefilterRequest& request, const PrefilterRe
 }
 
 void requireError(const PrefilterResult& result, double asked) {
-    if (result.error_estimate <= asked) return;
-    char text[160];
-    std::snprintf(text, sizeof text,
-                  "--max-error %g cannot be met: the estimated relative RMSE is %.2g; ask for more "
-                  "or use --quality reference",
-                  asked, result.error_estimate);
+    if (result.error_bound <= asked) return;
+    char text[240];
+    std::snprintf(
+        text, sizeof text,
+        "--max-error %g cannot be met: with harmonics up to degree %d and %d bright pixels "
+        "apart the bound of the relative RMSE is %.2g (estimate %.2g); ask for more, or "
+        "use --quality reference",
+        asked, result.band_limit, result.peaks_split, result.error_bound, result.error_estimate);
     throw Error(ExitCode::accuracy, text);
 }
 
@@ -78,7 +81,7 @@ void bindQuality(CLI::App& app, QualityOptions& options) {
         ->group("Accuracy");
 }
 
-std::vector<PrefilterResult> runPrefilter(Session& session, const Image& latlong,
+std::vector<PrefilterResult> runPrefilter(Session& session, const Panorama& latlong,
                                           std::span<const PrefilterRequest> requests,
                                           const QualityOptions& quality) {
     PrefilterOptions options = optionsFor(quality.quality, session.threads());

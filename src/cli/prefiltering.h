@@ -24,7 +24,7 @@ void bindQuality(CLI::App& app, QualityOptions& options);
 
 /// Convolves the probe and puts each result's error, band limit, peaks and seconds into the report
 /// under `results`. Throws Error (accuracy) when an asked `--max-error` is not kept.
-std::vector<PrefilterResult> runPrefilter(Session& session, const Image& latlong,
+std::vector<PrefilterResult> runPrefilter(Session& session, const Panorama& latlong,
                                           std::span<const PrefilterRequest> requests,
                                           const QualityOptions& quality);
 

@@ -14,22 +14,27 @@ inline constexpr double kFloatRounding = 1e-7;
 /// many times as large.
 inline constexpr double kBoundOverEstimate = 3;
 
-/// Sum of w b^2 over a map's texels and channels.
+/// Sums of w b^2 and w |b| over a map's texels and channels.
 class MapNorm {
 public:
     void add(double solid_angle, double value) {
         sum_ += solid_angle * value * value;
+        absolute_ += solid_angle * std::abs(value);
         ++values_;
     }
     void add(const MapNorm& other) {
         sum_ += other.sum_;
+        absolute_ += other.absolute_;
         values_ += other.values_;
     }
     double root() const { return std::sqrt(sum_); }
+    /// Integral of the channels' absolute values.
+    double absolute() const { return absolute_; }
     std::size_t texels() const { return values_ / 3; }
 
 private:
     double sum_ = 0;
+    double absolute_ = 0;
     std::size_t values_ = 0;
 };
 

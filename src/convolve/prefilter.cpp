@@ -9,6 +9,7 @@
 #include "convolve/texels.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "panorama/conventions.h"
 #include "panorama/layouts.h"
 #include "panorama/resample.h"
 
@@ -94,7 +95,8 @@ struct Ingredients {
 };
 
 struct Probe {
-    const Image& image;
+    const Panorama& panorama;
+    const Image& image; ///< its
     double scale;
     bool negative;
 };
@@ -197,12 +199,13 @@ bool uses(const Plan& plan, Method method) {
     return std::ranges::any_of(plan.lobes, [&](const LobePlan& l) { return l.method == method; });
 }
 
-Engine analyseProbe(const Image& image, std::span<const PrefilterRequest> requests,
+Engine analyseProbe(const Panorama& panorama, std::span<const PrefilterRequest> requests,
                     const PrefilterOptions& options) {
     const Stopwatch watch;
     const int threads = options.threads;
+    const Image& image = panorama.image;
     const double scale = scaleOf(image, threads);
-    Engine engine{{image, scale, false},
+    Engine engine{{panorama, image, scale, false},
                   measureProbe(image, scale, threads),
                   {},
                   {},
@@ -249,10 +252,10 @@ PrefilterResult emptyResult(const PrefilterRequest& request) {
 PrefilterResult areaFiltered(const Engine& engine, const PrefilterRequest& request, int threads) {
     const Stopwatch watch;
     PrefilterResult result;
-    result.map =
-        resample({Layout::latlong, engine.probe.image}, request.layout, request.size, threads);
+    result.map = resample(engine.probe.panorama, request.layout, request.size, threads);
     result.seconds_spatial = watch.seconds();
     result.error_bound = result.error_estimate = kFloatRounding;
+    result.worst_bound = kFloatRounding;
     return result;
 }
 
@@ -267,6 +270,7 @@ PrefilterResult directSum(const Engine& engine, const PrefilterRequest& request,
     fillMap(engine.probe, request, footprint, parts, threads, result.map.image, norm);
     result.seconds_spatial = watch.seconds();
     result.error_bound = result.error_estimate = kFloatRounding;
+    result.worst_bound = kFloatRounding;
     return result;
 }
 
@@ -296,6 +300,8 @@ PrefilterResult byHarmonics(const Engine& engine, const PrefilterRequest& reques
         relativeError(error, norm.root() * engine.probe.scale, norm.texels());
     result.error_bound = relative_error.bound;
     result.error_estimate = relative_error.estimate;
+    const double mean = norm.absolute() * engine.probe.scale / (12 * kPi);
+    result.worst_bound = relative(error.pointwise, mean);
     result.seconds_spatial = watch.seconds() - result.seconds_synthesis;
     return result;
 }
@@ -313,18 +319,17 @@ PrefilterResult byArea(const Engine& engine, const PrefilterRequest& request, co
         footprint.scale * texel);
     const SmoothField field = synthesise(*engine.whole, narrow.k, lobe.degree, threads);
     result.seconds_synthesis = watch.seconds();
-    const auto areaOf = [&](const Image& image) {
-        return resample({Layout::latlong, image}, request.layout, request.size, threads,
-                        Enlarging::hold)
-            .image;
+    const auto areaOf = [&](const Panorama& panorama) {
+        return resample(panorama, request.layout, request.size, threads, Enlarging::hold).image;
     };
     NarrowParts of_narrow{
         narrow.area,
-        areaOf(probe),
+        areaOf(engine.probe.panorama),
         {},
         makeNarrowPeaks(engine.narrow_peaks, probe.width, probe.height, request.lobe, narrow)};
     if (!engine.narrow_peaks.empty())
-        of_narrow.peak_area = areaOf(peakImage(engine.narrow_peaks, probe.width, probe.height));
+        of_narrow.peak_area =
+            areaOf({Layout::latlong, peakImage(engine.narrow_peaks, probe.width, probe.height)});
     Ingredients parts;
     parts.field = &field;
     parts.narrow = &of_narrow;
@@ -347,10 +352,10 @@ PrefilterOptions optionsFor(Quality quality, int threads) {
     return {};
 }
 
-std::vector<PrefilterResult> prefilter(const Image& latlong,
+std::vector<PrefilterResult> prefilter(const Panorama& latlong,
                                        std::span<const PrefilterRequest> requests,
                                        const PrefilterOptions& options) {
-    checkRequests(latlong, requests, options);
+    checkRequests(latlong.image, requests, options);
     const Engine engine = analyseProbe(latlong, requests, options);
     std::vector<PrefilterResult> results;
     for (std::size_t i = 0; i < requests.size(); ++i) {

@@ -10,6 +10,7 @@
 #include "panorama/panorama.h"
 
 #include <array>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -52,10 +53,13 @@ PrefilterOptions optionsFor(Quality quality, int threads = 0);
 /// |b|^2) over texels and channels, w the solid angle, against the exact integral.
 struct PrefilterResult {
     Panorama map;
-    int band_limit = 0;           ///< highest degree l used, 0 when none was
-    int peaks_split = 0;          ///< pixels convolved directly instead of in harmonics
-    double error_bound = 0;       ///< the error is not greater than this
-    double error_estimate = 0;    ///< from the decay of the probe's measured spectrum
+    int band_limit = 0;        ///< highest degree l used, 0 when none was
+    int peaks_split = 0;       ///< pixels convolved directly instead of in harmonics
+    double error_bound = 0;    ///< the error is not greater than this
+    double error_estimate = 0; ///< from the decay of the probe's measured spectrum
+    /// No texel's channel is off by more than this times the map's mean of |b|. Not known for lobes
+    /// too narrow for harmonics.
+    std::optional<double> worst_bound;
     double seconds_analysis = 0;  ///< transform of the probe; the same for all requests
     double seconds_synthesis = 0; ///< harmonics to texels
     double seconds_spatial = 0;   ///< peaks and texels, or the direct sum
@@ -68,7 +72,7 @@ struct PrefilterResult {
 /// for roughness 0 the area-filtered probe. Results stand in the order of the requests. Throws
 /// Error on a lobe parameter or a size out of range, or a layout that is not lat-long or made of
 /// cube faces.
-std::vector<PrefilterResult> prefilter(const Image& latlong,
+std::vector<PrefilterResult> prefilter(const Panorama& latlong,
                                        std::span<const PrefilterRequest> requests,
                                        const PrefilterOptions& options);
 

@@ -39,8 +39,9 @@ void lobe(benchmark::State& state, const Lobe& which) {
     const Image& probe = sky(512);
     PrefilterResult result;
     for (auto _ : state)
-        result = prefilter(probe, std::span(&request, 1), {asked, false, 0})[0];
-    const PrefilterResult exact = prefilter(probe, std::span(&request, 1), {1e-7, false, 0})[0];
+        result = prefilter({Layout::latlong, probe}, std::span(&request, 1), {asked, false, 0})[0];
+    const PrefilterResult exact =
+        prefilter({Layout::latlong, probe}, std::span(&request, 1), {1e-7, false, 0})[0];
     const double error = relativeRmse(result.map.image, exact.map.image);
     state.counters["estimate"] = result.error_estimate;
     state.counters["bound"] = result.error_bound;
@@ -68,8 +69,9 @@ void chain(benchmark::State& state, const Image& probe) {
     const std::vector<PrefilterRequest> requests = chainRequests();
     std::vector<PrefilterResult> results;
     for (auto _ : state)
-        results = prefilter(probe, requests, {1e-4, false, 0});
-    const std::vector<PrefilterResult> exact = prefilter(probe, requests, {1e-6, false, 0});
+        results = prefilter({Layout::latlong, probe}, requests, {1e-4, false, 0});
+    const std::vector<PrefilterResult> exact =
+        prefilter({Layout::latlong, probe}, requests, {1e-6, false, 0});
     double worst = 0;
     for (std::size_t i = 0; i + 3 < results.size(); ++i)
         worst = std::max(worst, relativeRmse(results[i].map.image, exact[i].map.image));

@@ -128,7 +128,8 @@ TEST(Narrow, TexelLargerThanTheLobeGetsTheMeanOverItsFootprint) {
     const Image probe = noise(24, 12);
     for (const double roughness : {0.05, 0.03, 0.01}) {
         const PrefilterRequest request{{Kernel::ggx, roughness}, Layout::faces, 4};
-        const PrefilterResult result = prefilter(probe, std::span(&request, 1), {})[0];
+        const PrefilterResult result =
+            prefilter({Layout::latlong, probe}, std::span(&request, 1), {})[0];
         // The points' own error, where pixels' edges pass between them, is 2e-3 to 5e-3.
         EXPECT_LT(footprintError(probe, request, result.map.image, 48), 6e-3 + result.error_bound)
             << roughness << " bound " << result.error_bound;
@@ -146,7 +147,8 @@ TEST(Narrow, ASunLeavesNoRingAndKeepsItsEnergy) {
     }
     for (const double roughness : {0.05, 0.01}) {
         const PrefilterRequest request{{Kernel::ggx, roughness}, Layout::faces, 4};
-        const PrefilterResult result = prefilter(probe, std::span(&request, 1), {})[0];
+        const PrefilterResult result =
+            prefilter({Layout::latlong, probe}, std::span(&request, 1), {})[0];
         const Image& map = result.map.image;
         double energy = 0;
         float least = map.pixels[0];
@@ -170,7 +172,8 @@ TEST(Narrow, GoesOverIntoTheAreaFilteredProbe) {
     double last = 1;
     for (const double roughness : {0.03, 0.01, 0.001, 0.0}) {
         const PrefilterRequest request{{Kernel::ggx, roughness}, Layout::faces, 2};
-        const PrefilterResult result = prefilter(probe, std::span(&request, 1), {})[0];
+        const PrefilterResult result =
+            prefilter({Layout::latlong, probe}, std::span(&request, 1), {})[0];
         double sum = 0;
         for (std::size_t i = 0; i < area.image.pixels.size(); ++i) {
             sum += std::pow(result.map.image.pixels[i] - area.image.pixels[i], 2);

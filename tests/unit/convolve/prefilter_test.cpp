@@ -33,7 +33,7 @@ oracle::LobeFunction functionOf(const Lobe& lobe) {
 PrefilterResult filter(const Image& probe, const Lobe& lobe, Layout layout, int size,
                        const PrefilterOptions& options = {}) {
     const PrefilterRequest request{lobe, layout, size};
-    return prefilter(probe, std::span(&request, 1), options)[0];
+    return prefilter({Layout::latlong, probe}, std::span(&request, 1), options)[0];
 }
 
 Image constant(int width, int height, float value) {
@@ -75,45 +75,68 @@ struct Difference {
     double worst = 0; ///< of |a - b| / max(|b|, mean |b|)
 };
 
-/// A result against the oracle, at about `count` of its texels; the norms that errors are relative
-/// to are the whole map's.
-Difference compare(const PrefilterResult& result, const Image& probe, const Lobe& lobe, int count) {
-    const Image& map = result.map.image;
-    const int texels = map.width * map.height, step = std::max(1, texels / count) | 1;
-    std::vector<oracle::Direction> directions;
-    std::vector<int> used;
+/// About `count` of a map's texels, evenly.
+struct Sample {
+    std::vector<int> texels;
     std::vector<double> weights;
-    double mean = 0, norm = 0, share = 0;
-    for (int t = 0; t < texels; ++t) {
+    std::vector<oracle::Direction> directions;
+};
+
+Sample sampleOf(Layout layout, int size, int count) {
+    const V2i extent = layoutExtent(layout, size);
+    const int texels = extent.x * extent.y, step = std::max(1, texels / count) | 1;
+    Sample sample;
+    for (int t = 0; t < texels; t += step) {
+        const int x = t % extent.x, y = t / extent.x;
+        const auto d = texelDirection(layout, extent.x, extent.y, x + 0.5, y + 0.5);
+        if (!d) continue;
+        const V3d n = d->normalized();
+        sample.directions.push_back({n.x, n.y, n.z});
+        sample.texels.push_back(t);
+        sample.weights.push_back(texelSolidAngle(layout, extent.x, extent.y, x, y));
+    }
+    return sample;
+}
+
+using Expected = std::vector<std::array<double, 3>>;
+
+Expected expectedAt(const Sample& sample, const Image& probe, const Lobe& lobe) {
+    return oracle::convolve(probe, functionOf(lobe), sample.directions, 1e-7);
+}
+
+/// A result against the oracle at some of its texels; the norms that errors are relative to are the
+/// whole map's.
+Difference compare(const PrefilterResult& result, const Sample& sample, const Expected& expected) {
+    const Image& map = result.map.image;
+    double mean = 0, norm = 0, share = 0, error = 0;
+    for (int t = 0; t < map.width * map.height; ++t) {
         const int x = t % map.width, y = t / map.width;
         const double w = texelSolidAngle(result.map.layout, map.width, map.height, x, y);
-        if (w == 0) continue;
         for (int c = 0; c < 3; ++c) {
             const double value = map.at(x, y)[c];
             mean += w * std::abs(value) / (12 * kPi);
             norm += w * value * value;
         }
-        if (t % step != 0) continue;
-        const V3d n = texelDirection(result.map.layout, map.width, map.height, x + 0.5, y + 0.5)
-                          ->normalized();
-        directions.push_back({n.x, n.y, n.z});
-        used.push_back(t);
-        weights.push_back(w);
-        share += w / (4 * kPi);
     }
-    const auto expected = oracle::convolve(probe, functionOf(lobe), directions, 1e-7);
     Difference difference;
-    double error = 0;
-    for (std::size_t i = 0; i < used.size(); ++i) {
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+        share += sample.weights[i] / (4 * kPi);
         for (int c = 0; c < 3; ++c) {
-            const double a = map.pixels[std::size_t{3} * used[i] + c], b = expected[i][c];
-            error += weights[i] * (a - b) * (a - b);
+            const double a = map.pixels[std::size_t{3} * sample.texels[i] + c], b = expected[i][c];
+            error += sample.weights[i] * (a - b) * (a - b);
             difference.worst =
                 std::max(difference.worst, std::abs(a - b) / std::max(std::abs(b), mean));
         }
     }
     difference.rmse = std::sqrt(error / share / norm);
     return difference;
+}
+
+Difference compare(const PrefilterResult& result, const Image& probe, const Lobe& lobe, int count) {
+    const Panorama& map = result.map;
+    const int size = *layoutSize(map.layout, map.image.width, map.image.height);
+    const Sample sample = sampleOf(map.layout, size, count);
+    return compare(result, sample, expectedAt(sample, probe, lobe));
 }
 
 const Lobe kWideLobes[] = {{Kernel::lambert, 0},     {Kernel::ggx, 0.25},
@@ -125,16 +148,20 @@ const Lobe kWideLobes[] = {{Kernel::lambert, 0},     {Kernel::ggx, 0.25},
 TEST(Prefilter, KeepsTheAskedErrorAndSaysItsOwn) {
     const Image probe = scene(48, 24);
     for (const Lobe& lobe : kWideLobes) {
+        const Sample sample = sampleOf(Layout::faces, 24, 30);
+        const Expected expected = expectedAt(sample, divided(probe, 2), lobe);
         for (const double asked : {1e-3, 1e-4, 1e-5}) {
             const PrefilterResult result =
                 filter(probe, lobe, Layout::faces, 24, {asked, false, 0});
-            const Difference d = compare(result, divided(probe, 2), lobe, 30);
+            const Difference d = compare(result, sample, expected);
             const std::string what = "kernel " + std::to_string(int(lobe.kernel)) + " " +
                                      std::to_string(lobe.parameter) + " asked " +
                                      std::to_string(asked);
             EXPECT_LE(d.rmse, asked) << what;
             EXPECT_LE(d.worst, 10 * asked) << what;
+            EXPECT_LE(result.error_bound, asked) << what;
             EXPECT_LE(d.rmse, result.error_bound) << what;
+            EXPECT_LE(d.worst, result.worst_bound.value()) << what;
             EXPECT_LE(d.rmse, 3 * result.error_estimate) << what;
             EXPECT_GE(d.rmse, result.error_estimate / 3) << what;
         }
@@ -251,8 +278,8 @@ TEST(Prefilter, SameBytesForAnyNumberOfThreads) {
     for (const double r : {0.0, 0.08, 0.25, 1.0}) {
         requests.push_back({{Kernel::ggx, r}, Layout::faces, 2});
     }
-    const auto one = prefilter(probe, requests, {1e-4, false, 1});
-    const auto five = prefilter(probe, requests, {1e-4, false, 5});
+    const auto one = prefilter({Layout::latlong, probe}, requests, {1e-4, false, 1});
+    const auto five = prefilter({Layout::latlong, probe}, requests, {1e-4, false, 5});
     for (std::size_t i = 0; i < requests.size(); ++i) {
         EXPECT_EQ(one[i].map.image.pixels, five[i].map.image.pixels) << i;
         EXPECT_EQ(one[i].error_estimate, five[i].error_estimate);
