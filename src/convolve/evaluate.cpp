@@ -1,15 +1,13 @@
-#include "convolve/fft.h"
-#include "convolve/synthesis.h"
+#include "convolve/evaluate.h"
+
 #include "core/parallel.h"
+#include "panorama/conventions.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace ibl {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 /// Thetas in [0, pi / 2] less apart than this are one: waves of any degree differ by less than
 /// 1e-9 there.
@@ -31,7 +29,7 @@ Thetas differentThetas(const double* v, std::size_t n) {
     for (const double theta : sorted) {
         std::vector<double>& different = thetas.different;
         if (!different.empty() && theta - different.back() <= kSameTheta) continue;
-        // No group has thetas from either side of pi / 4: the one near the pole are reckoned apart.
+        // No group has thetas from either side of pi / 4: those near the pole are reckoned apart.
         const bool crosses = !different.empty() && different.back() < kPi / 4 && theta >= kPi / 4;
         while (crosses && different.size() % kPairGroup != 0)
             different.push_back(different.back());
@@ -89,7 +87,30 @@ void evaluateField(const Harmonics& harmonics, const std::vector<double>& scale,
 }
 
 bool evaluationIsCheaper(int degree, std::size_t points) {
+    // Measured with the points of cube maps.
     return points < 4 * static_cast<std::size_t>(degree);
+}
+
+std::size_t mapPoints(const Image& map, const Footprint& footprint) {
+    return static_cast<std::size_t>(map.width) * map.height *
+           static_cast<std::size_t>(footprint.samples) * footprint.samples;
+}
+
+MapValues evaluateMap(const Harmonics& harmonics, const std::vector<double>& scale, int degree,
+                      Layout layout, int width, int height, const Footprint& footprint,
+                      int threads) {
+    MapValues result;
+    std::vector<double> u, v;
+    for (int y = 0; y < height; ++y) {
+        const RowPoints points = rowPoints(layout, width, height, y, footprint);
+        result.first.push_back(u.size());
+        u.insert(u.end(), points.u.begin(), points.u.end());
+        v.insert(v.end(), points.v.begin(), points.v.end());
+    }
+    result.values.resize(3 * u.size());
+    evaluateField(harmonics, scale, degree, u.data(), v.data(), u.size(), threads,
+                  result.values.data());
+    return result;
 }
 
 } // namespace ibl

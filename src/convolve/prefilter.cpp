@@ -3,6 +3,7 @@
 #include "convolve/analysis.h"
 #include "convolve/direct.h"
 #include "convolve/error_bound.h"
+#include "convolve/evaluate.h"
 #include "convolve/narrow.h"
 #include "convolve/plan.h"
 #include "convolve/synthesis.h"
@@ -89,6 +90,7 @@ struct NarrowParts {
 /// What an output's rows are made from; absent parts are null.
 struct Ingredients {
     const SmoothField* field = nullptr;
+    const MapValues* at_points = nullptr; ///< in place of `field`
     const PeakSum* peaks = nullptr;
     const DirectLobe* direct = nullptr;
     const NarrowParts* narrow = nullptr;
@@ -130,6 +132,10 @@ void fillRow(const Probe& probe, const PrefilterRequest& request, const Footprin
         sampleField(*parts.field, points.u.data(), points.v.data(), static_cast<int>(count),
                     smooth.data());
         std::ranges::copy(smooth, values.begin());
+    }
+    if (parts.at_points) {
+        const double* row = parts.at_points->values.data() + 3 * parts.at_points->first[y];
+        std::copy_n(row, 3 * count, values.begin());
     }
     if (parts.peaks) {
         addPeaks(*parts.peaks, points.u, points.v, values.data());
@@ -281,17 +287,26 @@ PrefilterResult byHarmonics(const Engine& engine, const PrefilterRequest& reques
     const std::vector<double> beyond = energyBeyond(engine.power, engine.clamped_energy);
     const double allowed = allowedNorm(engine.statistics, request, lobe.k, max_error);
     const int degree = std::min(lobe.degree, leastDegree(lobe.k, lobe.degree, allowed, beyond));
-    const SmoothField field = synthesise(*engine.clamped, lobe.k, degree, threads);
-    result.seconds_synthesis = watch.seconds();
+    // Peaks have no highest degree.
+    const int highest = engine.peaks.empty() ? degree : kAnyDegree;
+    const Footprint footprint = footprintOf(request.lobe, texelAngle(request), highest);
     Ingredients parts;
-    parts.field = &field;
+    SmoothField field;
+    MapValues at_points;
+    const Image& map = result.map.image;
+    if (evaluationIsCheaper(degree, mapPoints(map, footprint))) {
+        at_points = evaluateMap(*engine.clamped, lobe.k, degree, request.layout, map.width,
+                                map.height, footprint, threads);
+        parts.at_points = &at_points;
+    } else {
+        field = synthesise(*engine.clamped, lobe.k, degree, threads);
+        parts.field = &field;
+    }
+    result.seconds_synthesis = watch.seconds();
     const PeakSum peaks = makePeakSum(engine.peaks, engine.probe.image.width,
                                       engine.probe.image.height, request.lobe);
     parts.peaks = &peaks;
     MapNorm norm;
-    // Peaks have no highest degree.
-    const int highest = engine.peaks.empty() ? degree : kAnyDegree;
-    const Footprint footprint = footprintOf(request.lobe, texelAngle(request), highest);
     fillMap(engine.probe, request, footprint, parts, threads, result.map.image, norm);
     result.band_limit = degree;
     result.peaks_split = static_cast<int>(engine.peaks.size());

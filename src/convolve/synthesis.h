@@ -34,15 +34,6 @@ double interpolationError(int l, int degree);
 /// Values of the field at n lat-long points (u, v) in [0, 1]: out[3 i + channel].
 void sampleField(const SmoothField& field, const double* u, const double* v, int n, float* out);
 
-/// The same field at n lat-long points without a grid: a Legendre sum at each different |cos
-/// theta|, a Fourier sum at each point. Exact but for rounding. out[3 i + channel].
-void evaluateField(const Harmonics& harmonics, const std::vector<double>& scale, int degree,
-                   const double* u, const double* v, std::size_t n, int threads, double* out);
-
-/// Whether evaluateField takes less time than synthesise and sampleField, for the points of maps,
-/// which share many an |cos theta|.
-bool evaluationIsCheaper(int degree, std::size_t points);
-
 /// Samples of the field on `rings` rings (a multiple of 2 kLanes, more than degree) at theta = pi
 /// (r + 0.5) / rings and twice as many columns at psi = pi i / rings, in double, for tests and
 /// benchmarks: out[channel][ring][column].

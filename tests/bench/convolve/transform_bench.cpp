@@ -1,6 +1,7 @@
 // Times of the transform's stages on one thread, each with the error it makes. Cases are named by
 // the band limit, or the rows, that they run with.
 #include "convolve/analysis.h"
+#include "convolve/evaluate.h"
 #include "convolve/synthesis.h"
 #include "convolve/theta_resample.h"
 #include "panorama/builtin.h"

@@ -1,4 +1,5 @@
 #include "convolve/analysis.h"
+#include "convolve/evaluate.h"
 #include "convolve/fft.h"
 #include "convolve/synthesis.h"
 
