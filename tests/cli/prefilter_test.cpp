@@ -94,9 +94,9 @@ TEST(Specular, ChainHasTheLevelsAskedAndTheirLobes) {
     }
 }
 
-nlohmann::json chainReport(const Scratch& scratch, Words words) {
-    words.insert(words.begin(), {"specular", "builtin:sky", "--size", "16", "--levels", "5", "--to",
-                                 "vstrip", "-o", "c.exr", "--report", "c.json"});
+nlohmann::json chainReport(const Scratch& scratch, const char* levels, Words words) {
+    words.insert(words.begin(), {"specular", "builtin:sky", "--size", "16", "--levels", levels,
+                                 "--to", "vstrip", "-o", "c.exr", "--report", "c.json"});
     const ToolResult result = runTool(words, scratch.path());
     EXPECT_EQ(result.exit_code, 0) << result.err;
     return nlohmann::json::parse(readFile(scratch / "c.json")).at("results").at("maps");
@@ -105,7 +105,7 @@ nlohmann::json chainReport(const Scratch& scratch, Words words) {
 TEST(Specular, ChainsOfEveryKernelSayTheirRoughness) {
     const Scratch scratch;
     for (const char* kernel : {"phong", "blinn-phong", "charlie"}) {
-        const auto maps = chainReport(scratch, {"--kernel", kernel});
+        const auto maps = chainReport(scratch, "5", {"--kernel", kernel});
         for (int k = 0; k < 5; ++k)
             EXPECT_EQ(maps[k].at("roughness"), k / 4.0) << kernel;
         EXPECT_EQ(maps[0].at("band_limit"), 0) << kernel; // the area-filtered probe
@@ -118,27 +118,23 @@ TEST(Specular, ChainsOfEveryKernelSayTheirRoughness) {
 
 TEST(Specular, RoughnessMapsAreTheirFormulas) {
     const Scratch scratch;
-    const auto square = chainReport(scratch, {"--roughness-map", "square"});
-    const auto filament = chainReport(scratch, {"--roughness-map", "filament"});
+    const auto filament = chainReport(scratch, "5", {"--roughness-map", "filament"});
     for (int k = 0; k < 5; ++k) {
-        EXPECT_EQ(square[k].at("roughness"), k * k / 16.0);
         EXPECT_NEAR(filament[k].at("roughness").get<double>(), 1 - std::sqrt(1 - k / 4.0), 1e-15);
     }
+    const auto square = chainReport(scratch, "3", {"--roughness-map", "square"});
+    for (int k = 0; k < 3; ++k)
+        EXPECT_EQ(square[k].at("roughness"), k * k / 4.0);
     // The level is the lobe of the roughness that it says.
-    ASSERT_EQ(runTool({"specular", "builtin:sky", "--roughness", "0.0625", "--size", "8", "--to",
+    ASSERT_EQ(runTool({"specular", "builtin:sky", "--roughness", "0.25", "--size", "8", "--to",
                        "vstrip", "-o", "one.exr"},
                       scratch.path())
                   .exit_code,
               0);
-    chainReport(scratch, {"--roughness-map", "square"});
     const Image one = readImage((scratch / "one.exr").string()).image;
     const Image level = readImage((scratch / "c_m1.exr").string()).image;
-    double difference = 0, norm = 0;
-    for (std::size_t i = 0; i < one.pixels.size(); ++i) {
-        difference += std::pow(one.pixels[i] - level.pixels[i], 2);
-        norm += std::pow(one.pixels[i], 2);
-    }
-    EXPECT_LT(std::sqrt(difference / norm), 1e-3);
+    for (std::size_t i = 0; i < one.pixels.size(); ++i)
+        EXPECT_NEAR(one.pixels[i], level.pixels[i], 1e-3f * (1 + level.pixels[i]));
 }
 
 TEST(Specular, LambertIsDiffuse) {
