@@ -17,6 +17,7 @@ struct Command {
 Command bindConvert(CLI::App& root);
 Command bindDiffuse(CLI::App& root);
 Command bindSpecular(CLI::App& root);
+Command bindBrdf(CLI::App& root);
 Command bindLights(CLI::App& root);
 Command bindRender(CLI::App& root);
 Command bindBake(CLI::App& root);

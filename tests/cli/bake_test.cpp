@@ -41,6 +41,20 @@ TEST(Bake, IsTheOtherCommandsResults) {
                 readFile(scratch / "d_py.exr").size());
 }
 
+TEST(Bake, RoughnessMapIsInTheManifest) {
+    const Scratch scratch;
+    ASSERT_EQ(
+        runTool({"bake", "builtin:furnace", "-o", "b", "--size", "4", "--roughness-map", "square"},
+                scratch.path())
+            .exit_code,
+        0);
+    const auto manifest = nlohmann::json::parse(readFile(scratch / "b/bake.json"));
+    EXPECT_EQ(manifest.at("specular")[1].at("roughness"), 0.25);
+    expectRefused(
+        runTool({"bake", "builtin:furnace", "-o", "c", "--roughness-map", "cubic"}, scratch.path()),
+        1, "--roughness-map");
+}
+
 TEST(Bake, AnExistingFolderIsUsedAndAFailedRunLeavesNone) {
     const Scratch scratch;
     std::filesystem::create_directory(scratch / "b");

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace ibl {
 namespace {
@@ -42,7 +43,11 @@ TEST(Specular, FurnaceIsItselfForEveryLobe) {
         furnace({"--roughness", roughness});
     for (const char* exponent : {"0", "1", "100", "1e5"}) {
         furnace({"--kernel", "phong", "--exponent", exponent});
+        furnace({"--kernel", "blinn-phong", "--exponent", exponent});
     }
+    for (const char* roughness : {"0.05", "0.5", "1"})
+        furnace({"--kernel", "charlie", "--roughness", roughness});
+    furnace({"--kernel", "lambert"});
 }
 
 TEST(Specular, RoughnessZeroIsConvert) {
@@ -89,6 +94,60 @@ TEST(Specular, ChainHasTheLevelsAskedAndTheirLobes) {
     }
 }
 
+nlohmann::json chainReport(const Scratch& scratch, const char* levels, Words words) {
+    words.insert(words.begin(), {"specular", "builtin:sky", "--size", "16", "--levels", levels,
+                                 "--to", "vstrip", "-o", "c.exr", "--report", "c.json"});
+    const ToolResult result = runTool(words, scratch.path());
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return nlohmann::json::parse(readFile(scratch / "c.json")).at("results").at("maps");
+}
+
+TEST(Specular, ChainsOfEveryKernelSayTheirRoughness) {
+    const Scratch scratch;
+    for (const char* kernel : {"phong", "blinn-phong", "charlie"}) {
+        const auto maps = chainReport(scratch, "5", {"--kernel", kernel});
+        for (int k = 0; k < 5; ++k)
+            EXPECT_EQ(maps[k].at("roughness"), k / 4.0) << kernel;
+        EXPECT_EQ(maps[0].at("band_limit"), 0) << kernel; // the area-filtered probe
+        EXPECT_EQ(maps[2].at("kernel"), kernel);
+        if (std::string(kernel) != "charlie") {
+            EXPECT_EQ(maps[2].at("exponent"), 30.0);
+        }
+    }
+}
+
+TEST(Specular, RoughnessMapsAreTheirFormulas) {
+    const Scratch scratch;
+    const auto filament = chainReport(scratch, "5", {"--roughness-map", "filament"});
+    for (int k = 0; k < 5; ++k) {
+        EXPECT_NEAR(filament[k].at("roughness").get<double>(), 1 - std::sqrt(1 - k / 4.0), 1e-15);
+    }
+    const auto square = chainReport(scratch, "3", {"--roughness-map", "square"});
+    for (int k = 0; k < 3; ++k)
+        EXPECT_EQ(square[k].at("roughness"), k * k / 4.0);
+    // The level is the lobe of the roughness that it says.
+    ASSERT_EQ(runTool({"specular", "builtin:sky", "--roughness", "0.25", "--size", "8", "--to",
+                       "vstrip", "-o", "one.exr"},
+                      scratch.path())
+                  .exit_code,
+              0);
+    const Image one = readImage((scratch / "one.exr").string()).image;
+    const Image level = readImage((scratch / "c_m1.exr").string()).image;
+    for (std::size_t i = 0; i < one.pixels.size(); ++i)
+        EXPECT_NEAR(one.pixels[i], level.pixels[i], 1e-3f * (1 + level.pixels[i]));
+}
+
+TEST(Specular, LambertIsDiffuse) {
+    const Scratch scratch;
+    for (const Words& words : {Words{"diffuse", "builtin:sky"},
+                               Words{"specular", "builtin:sky", "--kernel", "lambert"}}) {
+        Words all = words;
+        all.insert(all.end(), {"--size", "8", "--to", "vstrip", "-o", words[0] + ".exr"});
+        ASSERT_EQ(runTool(all, scratch.path()).exit_code, 0);
+    }
+    EXPECT_TRUE(readFile(scratch / "diffuse.exr") == readFile(scratch / "specular.exr"));
+}
+
 TEST(Specular, Refusals) {
     const Scratch scratch;
     const auto refused = [&](Words words, const std::string& said) {
@@ -104,6 +163,15 @@ TEST(Specular, Refusals) {
     refused({"--kernel", "phong", "--exponent", "-1"}, "--exponent");
     refused({"--kernel", "phong", "--exponent", "1e7"}, "--exponent");
     refused({"--kernel", "cook", "--roughness", "0.5"}, "--kernel");
+    refused({"--kernel", "blinn-phong", "--roughness", "0.5"}, "--exponent");
+    refused({"--kernel", "blinn-phong", "--exponent", "1e7"}, "--exponent");
+    refused({"--kernel", "charlie", "--exponent", "5"}, "--roughness");
+    refused({"--kernel", "charlie", "--roughness", "0"}, "[0.05, 1]");
+    refused({"--kernel", "lambert", "--roughness", "0.5"}, "no parameter");
+    refused({"--kernel", "lambert", "--levels", "3"}, "--levels");
+    refused({"--kernel", "charlie", "--levels", "6", "--roughness-map", "square"}, "level 1");
+    refused({"--roughness", "0.5", "--roughness-map", "square"}, "--levels");
+    refused({"--levels", "3", "--roughness-map", "cubic"}, "--roughness-map");
     refused({"--levels", "10", "--size", "256"}, "--levels");
     refused({"--levels", "3", "--roughness", "0.5"}, "--levels");
     refused({"--roughness", "0.5", "--max-error", "0"}, "--max-error");

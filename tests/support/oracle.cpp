@@ -139,12 +139,12 @@ LobeFunction phong(double exponent) {
 }
 
 LobeFunction blinnPhong(double exponent) {
-    return [exponent](double c) { return std::pow(std::cos(0.5 * std::acos(c)), exponent) * c; };
+    return [exponent](double c) { return std::pow(0.5 * (1 + c), 0.5 * exponent) * c; };
 }
 
 LobeFunction charlie(double roughness) {
     const double alpha = roughness * roughness;
-    return [alpha](double c) { return std::pow(std::sqrt(0.5 * (1 - c)), 1 / alpha) * c; };
+    return [alpha](double c) { return std::pow(0.5 * (1 - c), 0.5 / alpha) * c; };
 }
 
 double integral(const LobeFunction& lobe) {
