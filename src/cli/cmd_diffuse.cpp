@@ -121,8 +121,7 @@ void bindSh(CLI::App& app, ShOptions& options) {
                                                           {"filament", ShConvention::filament}};
     app.add_option("--sh-convention", options.convention,
                    "radiance (default; three.js), irradiance, or filament (at most 3 bands)")
-        ->transform(CLI::Transformer(conventions))
-        ->check(CLI::IsMember(conventions))
+        ->transform(CLI::CheckedTransformer(conventions))
         ->type_name("NAME")
         ->group("Coefficients");
     const std::map<std::string, ShWindow> windows{{"none", ShWindow::none},
@@ -130,8 +129,7 @@ void bindSh(CLI::App& app, ShOptions& options) {
     app.add_option("--sh-window", options.window,
                    "none, or auto: the least damping that leaves nothing negative (default: none "
                    "for radiance, else auto)")
-        ->transform(CLI::Transformer(windows))
-        ->check(CLI::IsMember(windows))
+        ->transform(CLI::CheckedTransformer(windows))
         ->type_name("NAME")
         ->group("Coefficients");
 }
