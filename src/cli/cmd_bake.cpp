@@ -2,6 +2,7 @@
 #include "cli/commands.h"
 #include "cli/prefiltering.h"
 #include "cli/session.h"
+#include "cli/sh_json.h"
 
 #include "core/error.h"
 #include "lights/lights_json.h"
@@ -70,6 +71,7 @@ std::string manifest(const BakeOptions& options, const nlohmann::ordered_json& m
              {"kernel", maps[k]["kernel"]},
              {"roughness", maps[k]["roughness"]}});
     }
+    json["coefficients"] = {{"file", "sh.json"}, {"convention", "radiance"}, {"order", 3}};
     json["lights"] = {{"file", "lights.json"}, {"count", lights}};
     return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
@@ -97,6 +99,9 @@ void runBake(const BakeOptions& options) {
     const std::vector<Light> lights = session.stage(
         "cut", [&] { return medianCut(latlong.image, options.lights, session.threads()); });
 
+    const ShCoefficients sh =
+        session.stage("project", [&] { return projectProbe(latlong.image, 3, session.threads()); });
+
     BakeFolder folder(options.folder);
     WriteOptions how;
     how.type = options.type.value_or(PixelType::float32);
@@ -109,6 +114,7 @@ void runBake(const BakeOptions& options) {
         }
         session.writeText(folder.file("lights.json"),
                           lightsJson(lights, options.probe.input, "median"));
+        session.writeText(folder.file("sh.json"), shJson(sh, options.probe.input, false, 0));
         session.writeText(folder.file("bake.json"),
                           manifest(options, session.results()["maps"], lights.size()));
     });
@@ -119,8 +125,9 @@ void runBake(const BakeOptions& options) {
 } // namespace
 
 Command bindBake(CLI::App& root) {
-    CLI::App* app = root.add_subcommand(
-        "bake", "All that an engine needs: diffuse map, GGX chain and lights, with one analysis");
+    CLI::App* app =
+        root.add_subcommand("bake", "All that an engine needs: diffuse map, coefficients, GGX "
+                                    "chain and lights, with one analysis");
     auto options = std::make_shared<BakeOptions>();
     bindProbe(*app, options->probe);
     app->add_option("-o,--output", options->folder, "Folder to write into; made if it is not there")

@@ -6,6 +6,7 @@
 #include "convolve/evaluate.h"
 #include "convolve/narrow.h"
 #include "convolve/plan.h"
+#include "convolve/probe_scale.h"
 #include "convolve/synthesis.h"
 #include "convolve/texels.h"
 #include "core/error.h"
@@ -53,30 +54,6 @@ void checkRequests(const Image& probe, std::span<const PrefilterRequest> request
                                              " is not in [1, 16384]; give a size in that range");
         }
     }
-}
-
-/// A power of two that brings the probe's largest value near 1, so that neither suns nor denormals
-/// leave the range of the sums. Throws on values that are not finite.
-double scaleOf(const Image& probe, int threads) {
-    std::vector<float> rows(probe.height, 0.0f);
-    parallelFor(probe.height, threads, [&](std::size_t j) {
-        const float* p = probe.row(static_cast<int>(j));
-        float most = 0, finite = 0;
-        for (std::size_t i = 0; i < probe.rowFloats(); ++i) {
-            most = std::max(most, std::abs(p[i]));
-            finite += 0 * p[i]; // NaN unless every value is finite
-        }
-        rows[j] = finite == 0 ? most : std::numeric_limits<float>::quiet_NaN();
-    });
-    float most = 0;
-    for (const float row : rows) {
-        if (!std::isfinite(row)) {
-            throw Error(ExitCode::input,
-                        "probe: has pixels that are not finite; repair them first");
-        }
-        most = std::max(most, row);
-    }
-    return most > 0 ? std::ldexp(1.0, -std::ilogb(most)) : 1;
 }
 
 /// What Method::narrow adds to the harmonics.
@@ -210,7 +187,7 @@ Engine analyseProbe(const Panorama& panorama, std::span<const PrefilterRequest> 
     const Stopwatch watch;
     const int threads = options.threads;
     const Image& image = panorama.image;
-    const double scale = scaleOf(image, threads);
+    const double scale = probeScale(image, threads);
     Engine engine{{panorama, image, scale, false},
                   measureProbe(image, scale, threads),
                   {},

@@ -17,8 +17,8 @@ TEST(Bake, WritesWhatItsManifestNames) {
     EXPECT_EQ(manifest.at("specular")[3].at("roughness"), 1.0);
     EXPECT_EQ(manifest.at("diffuse").at("size"), 8);
     EXPECT_EQ(nlohmann::json::parse(readFile(scratch / "b/lights.json")).at("lights").size(), 5u);
-    // Folder, six diffuse faces, four levels of six, lights, manifest, depfile.
-    EXPECT_EQ(scratch.names().size(), 1u + 6 + 24 + 2 + 1);
+    // Folder, six diffuse faces, four levels of six, lights, coefficients, manifest, depfile.
+    EXPECT_EQ(scratch.names().size(), 1u + 6 + 24 + 3 + 1);
 }
 
 TEST(Bake, IsTheOtherCommandsResults) {
@@ -36,6 +36,8 @@ TEST(Bake, IsTheOtherCommandsResults) {
               0);
     ASSERT_EQ(runTool({"lights", "builtin:sky", "-o", "l.json"}, scratch.path()).exit_code, 0);
     EXPECT_TRUE(readFile(scratch / "b/lights.json") == readFile(scratch / "l.json"));
+    ASSERT_EQ(runTool({"diffuse", "builtin:sky", "--sh", "c.json"}, scratch.path()).exit_code, 0);
+    EXPECT_TRUE(readFile(scratch / "b/sh.json") == readFile(scratch / "c.json"));
     EXPECT_TRUE(readFile(scratch / "b/specular_m0_py.exr") == readFile(scratch / "s_m0_py.exr"));
     EXPECT_TRUE(readFile(scratch / "b/diffuse_py.exr").size() ==
                 readFile(scratch / "d_py.exr").size());

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace ibl {
 namespace {
@@ -28,6 +29,65 @@ TEST(Diffuse, FurnaceIsItselfInEveryLayout) {
         ASSERT_EQ(result.exit_code, 0) << result.err;
         expectConstant(scratch / "f.exr", 1, 1e-6f);
     }
+}
+
+TEST(Diffuse, CoefficientsOfAConstantProbeInEveryConvention) {
+    const Scratch scratch;
+    const double pi = std::acos(-1.0);
+    for (const auto& [name, first] : {std::pair{"radiance", std::sqrt(4 * pi)},
+                                      {"irradiance", pi * std::sqrt(4 * pi)},
+                                      {"filament", 1.0}}) {
+        const ToolResult result = runTool(
+            {"diffuse", "builtin:furnace", "--sh", "-", "--sh-convention", name}, scratch.path());
+        ASSERT_EQ(result.exit_code, 0) << result.err;
+        const auto json = nlohmann::json::parse(result.out);
+        EXPECT_EQ(json.at("convention"), name);
+        EXPECT_EQ(json.at("order"), 3);
+        ASSERT_EQ(json.at("coefficients").size(), 9u);
+        for (int i = 0; i < 9; ++i) {
+            EXPECT_NEAR(json.at("coefficients")[i][1].get<double>(), i == 0 ? first : 0, 1e-12);
+        }
+    }
+    EXPECT_TRUE(scratch.names().empty());
+}
+
+TEST(Diffuse, CoefficientsAreAnOutputLikeTheMap) {
+    const Scratch scratch;
+    const ToolResult result =
+        runTool({"diffuse", "builtin:sky", "--sh", "c.json", "--sh-order", "20", "--to", "latlong",
+                 "--size", "4", "-o", "d.exr", "--depfile", "d"},
+                scratch.path());
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(scratch.names(), (Words{"c.json", "d", "d.exr"}));
+    EXPECT_NE(readFile(scratch / "d").find("c.json"), std::string::npos);
+    EXPECT_EQ(nlohmann::json::parse(readFile(scratch / "c.json")).at("coefficients").size(), 400u);
+}
+
+TEST(Diffuse, RefusalsOfCoefficients) {
+    const Scratch scratch;
+    const auto refused = [&](Words words, const std::string& said) {
+        words.insert(words.begin(), {"diffuse", "builtin:sky"});
+        expectRefused(runTool(words, scratch.path()), 1, said);
+    };
+    refused({}, "--sh");
+    refused({"--sh", "c.json", "--sh-order", "0"}, "--sh-order");
+    refused({"--sh", "c.json", "--sh-order", "21"}, "--sh-order");
+    refused({"--sh", "c.json", "--sh-convention", "unity"}, "--sh-convention");
+    refused({"--sh", "c.json", "--sh-convention", "filament", "--sh-order", "4"}, "filament");
+    refused({"--sh", "c.json", "--sh-window", "hann"}, "--sh-window");
+    refused({"-o", "d.exr", "--sh-order", "3"}, "--sh-order");
+    refused({"-o", "d.exr", "--sh-convention", "radiance"}, "--sh-convention");
+    refused({"-o", "d.exr", "--sh-window", "auto"}, "--sh-window");
+    for (const char* option : {"--size", "--to", "--quality", "--type", "--compression"}) {
+        const std::map<std::string, const char*> values{{"--size", "8"},
+                                                        {"--to", "strip"},
+                                                        {"--quality", "high"},
+                                                        {"--type", "half"},
+                                                        {"--compression", "zip"}};
+        refused({"--sh", "c.json", option, values.at(option)}, option);
+    }
+    refused({"--sh", "-", "-o", "-", "--format", "exr"}, "--sh -");
+    EXPECT_TRUE(scratch.names().empty());
 }
 
 TEST(Specular, FurnaceIsItselfForEveryLobe) {
