@@ -96,7 +96,8 @@ void bindTarget(CLI::App& app, Layout& to, std::optional<int>& size,
                 const std::string& default_size) {
     addLayout(app, "--to", to, "Layout of the result (default faces)")->group("Output");
     app.add_option("--size", size,
-                   "Face edge, or height of a lat-long, in pixels (default: " + default_size + ")")
+                   "Face edge, height of a lat-long or edge of a square map, in pixels (default: " +
+                       default_size + ")")
         ->check(CLI::Range(1, kMaxSize))
         ->type_name("N")
         ->group("Output");

@@ -2,6 +2,7 @@
 #include "cli/commands.h"
 #include "cli/session.h"
 
+#include "panorama/layouts.h"
 #include "panorama/resample.h"
 
 #include <memory>
@@ -18,12 +19,13 @@ struct ConvertOptions {
 };
 
 /// The size at which a layout holds about what the source holds: a lat-long's row is as high as a
-/// face's texel at a quarter turn for two faces' edges.
+/// face's texel at a quarter turn for two faces' edges, and a square map has about as many texels
+/// as the cube of half its edge.
 int matchingSize(const Panorama& source, Layout to) {
     const int size = *layoutSize(source.layout, source.image.width, source.image.height);
-    const auto isLatlong = [](Layout l) { return l == Layout::latlong || l == Layout::exrLatlong; };
-    if (isLatlong(source.layout) == isLatlong(to)) return size;
-    return isLatlong(to) ? 2 * size : std::max(1, size / 2);
+    const auto isCube = [](Layout l) { return isCubeFamily(l) || l == Layout::exrCube; };
+    if (isCube(source.layout) == isCube(to)) return size;
+    return isCube(source.layout) ? 2 * size : std::max(1, size / 2);
 }
 
 void runConvert(const ConvertOptions& options) {

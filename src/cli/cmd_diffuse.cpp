@@ -121,17 +121,23 @@ void bindSh(CLI::App& app, ShOptions& options) {
     const std::map<std::string, ShConvention> conventions{{"radiance", ShConvention::radiance},
                                                           {"irradiance", ShConvention::irradiance},
                                                           {"filament", ShConvention::filament}};
-    app.add_option("--sh-convention", options.convention,
-                   "radiance (default; three.js), irradiance, or filament (at most 3 bands)")
-        ->transform(CLI::CheckedTransformer(conventions))
+    app.add_option_function<std::string>(
+           "--sh-convention",
+           [&options, conventions](const std::string& name) {
+               options.convention = conventions.at(name);
+           },
+           "radiance (default; three.js), irradiance, or filament (at most 3 bands)")
+        ->check(CLI::IsMember({"radiance", "irradiance", "filament"}))
         ->type_name("NAME")
         ->group("Coefficients");
     const std::map<std::string, ShWindow> windows{{"none", ShWindow::none},
                                                   {"auto", ShWindow::automatic}};
-    app.add_option("--sh-window", options.window,
-                   "none, or auto: the least damping that leaves nothing negative (default: none "
-                   "for radiance, else auto)")
-        ->transform(CLI::CheckedTransformer(windows))
+    app.add_option_function<std::string>(
+           "--sh-window",
+           [&options, windows](const std::string& name) { options.window = windows.at(name); },
+           "none, or auto: the least damping that leaves nothing negative (default: none "
+           "for radiance, else auto)")
+        ->check(CLI::IsMember({"none", "auto"}))
         ->type_name("NAME")
         ->group("Coefficients");
 }

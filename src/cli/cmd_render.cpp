@@ -10,9 +10,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include "panorama/square_maps.h"
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+
 #include <memory>
 
 namespace ibl {
@@ -147,7 +149,11 @@ void runRender(const RenderOptions& options) {
         }
     }
     cameraRays(cameraOf(options), options.frame.width, options.frame.height); // refuses bad cameras
-    const Panorama probe = session.readProbe(options.probe);
+    Panorama probe = session.readProbe(options.probe);
+    // Textures hold lat-longs and cubes.
+    if (isSquareMap(probe.layout)) {
+        probe = {Layout::latlong, latlongOf(std::move(probe), session.threads())};
+    }
     Scene scene;
     scene.probe = &probe;
     scene.object = objectOf(session, options.object);

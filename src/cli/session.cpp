@@ -3,7 +3,9 @@
 #include "core/error.h"
 #include "panorama/builtin.h"
 #include "panorama/census.h"
+#include "panorama/layouts.h"
 #include "panorama/resample.h"
+#include "panorama/square_maps.h"
 
 #include <nlohmann/json.hpp>
 
@@ -191,7 +193,8 @@ void Session::finish() {
 Image latlongOf(Panorama&& probe, int threads) {
     if (probe.layout == Layout::latlong) return std::move(probe.image);
     const int size = *layoutSize(probe.layout, probe.image.width, probe.image.height);
-    const int height = probe.layout == Layout::exrLatlong ? size : 2 * size;
+    const bool like_latlong = probe.layout == Layout::exrLatlong || isSquareMap(probe.layout);
+    const int height = like_latlong ? size : 2 * size;
     return resample(probe, Layout::latlong, height, threads).image;
 }
 

@@ -70,8 +70,7 @@ struct PrefilterResult {
 /// is the lobe-weighted mean about its centre's direction, so a constant probe L gives L; where the
 /// lobe is narrower than about two texels it is the mean of that over the texel's footprint, and
 /// for roughness 0 the area-filtered probe. Results stand in the order of the requests. Throws
-/// Error on a lobe parameter or a size out of range, or a layout that is not lat-long or made of
-/// cube faces.
+/// Error on a lobe parameter or a size out of range.
 std::vector<PrefilterResult> prefilter(const Panorama& latlong,
                                        std::span<const PrefilterRequest> requests,
                                        const PrefilterOptions& options);

@@ -4,6 +4,7 @@
 #include "convolve/peaks.h"
 #include "panorama/conventions.h"
 #include "panorama/layouts.h"
+#include "panorama/square_maps.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,12 +13,13 @@
 namespace ibl {
 namespace {
 
-/// Solid angle per unit of image area, up to a factor: sin theta in lat-longs, on a face the cube
-/// of the direction's largest component.
-double density(Layout layout, const V3d& d) {
-    if (layout == Layout::latlong || layout == Layout::exrLatlong) return std::hypot(d.x, d.z);
-    const double largest = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
-    return largest * largest * largest;
+/// Direction of the point at (dx, dy) from a texel's centre, drawn towards the centre where it lies
+/// outside a ball map's disc.
+V3d directionIn(Layout layout, int width, int height, V2d centre, V2d offset) {
+    for (;; offset *= 0.8) {
+        const V2d p = centre + offset;
+        if (const auto d = texelDirection(layout, width, height, p.x, p.y)) return *d;
+    }
 }
 
 /// A rule of at least n points on [-1, 1]: Gauss's, for many points in equal parts.
@@ -46,11 +48,12 @@ void addTexel(Layout layout, int width, int height, int x, int y, const Footprin
         for (std::size_t a = 0; a < rule.nodes.size(); ++a) {
             const double dx = 0.5 * footprint.scale * rule.nodes[a];
             const double dy = 0.5 * footprint.scale * rule.nodes[b];
-            const V3d d = texelDirection(layout, width, height, x + 0.5 + dx, y + 0.5 + dy).value();
+            const V3d d = directionIn(layout, width, height, {x + 0.5, y + 0.5}, {dx, dy});
             const V2d p = latlongPoint(d);
             points.u.push_back(p.x);
             points.v.push_back(p.y);
-            points.share.push_back(rule.weights[a] * rule.weights[b] * density(layout, d));
+            points.share.push_back(rule.weights[a] * rule.weights[b] *
+                                   solidAngleDensity(layout, d));
             total += points.share.back();
         }
     }
@@ -61,6 +64,7 @@ void addTexel(Layout layout, int width, int height, int x, int y, const Footprin
 } // namespace
 
 double texelAngle(const PrefilterRequest& request) {
+    if (isSquareMap(request.layout)) return std::sqrt(4 * kPi / texelCount(request));
     const bool rows = request.layout == Layout::latlong || request.layout == Layout::exrLatlong;
     return (rows ? kPi : 0.5 * kPi) / request.size;
 }
@@ -80,6 +84,8 @@ Footprint footprintOf(const Lobe& lobe, double texel, int degree) {
 
 double texelCount(const PrefilterRequest& request) {
     const double n = request.size;
+    if (isBallMap(request.layout)) return 0.25 * kPi * n * n;
+    if (isSquareMap(request.layout)) return n * n;
     const bool cube = isCubeFamily(request.layout) || request.layout == Layout::exrCube;
     return cube ? 6 * n * n : 2 * n * n;
 }
@@ -88,9 +94,7 @@ std::array<V3d, 4> texelCorners(Layout layout, int width, int height, int x, int
     std::array<V3d, 4> corners;
     for (int i = 0; i < 4; ++i) {
         const double dx = i == 1 || i == 2 ? 0.5 : -0.5, dy = i >= 2 ? 0.5 : -0.5;
-        const V3d d =
-            texelDirection(layout, width, height, x + 0.5 + scale * dx, y + 0.5 + scale * dy)
-                .value();
+        const V3d d = directionIn(layout, width, height, {x + 0.5, y + 0.5}, V2d(dx, dy) * scale);
         const V2d p = latlongPoint(d);
         corners[static_cast<std::size_t>(i)] = polarDirection(kPi * p.y, 2 * kPi * p.x);
     }

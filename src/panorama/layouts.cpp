@@ -1,5 +1,7 @@
 #include "panorama/layouts.h"
 
+#include "panorama/square_maps.h"
+
 #include "core/error.h"
 
 #include <algorithm>
@@ -14,18 +16,21 @@ struct NamedLayout {
     std::string_view name;
 };
 
-constexpr std::array<NamedLayout, 8> kNames{{
+constexpr std::array<NamedLayout, 11> kNames{{
     {Layout::latlong, "latlong"},
     {Layout::faces, "faces"},
     {Layout::vcross, "vcross"},
     {Layout::hcross, "hcross"},
     {Layout::strip, "strip"},
     {Layout::vstrip, "vstrip"},
+    {Layout::angular, "angular"},
+    {Layout::mirrorBall, "mirrorball"},
+    {Layout::octahedral, "octahedral"},
     {Layout::exrLatlong, "exr-latlong"},
     {Layout::exrCube, "exr-cube"},
 }};
 
-/// Extent of a cube layout in faces; {0, 0} for lat-longs.
+/// Extent of a cube layout in faces; {0, 0} for others.
 V2i extentInFaces(Layout layout) {
     switch (layout) {
     case Layout::vcross:
@@ -123,6 +128,10 @@ std::string shapeText(Layout layout) {
         return "4N x 3N";
     case Layout::strip:
         return "6N x N";
+    case Layout::angular:
+    case Layout::mirrorBall:
+    case Layout::octahedral:
+        return "N x N";
     default:
         return "N x 6N";
     }
@@ -153,12 +162,14 @@ bool isCubeFamily(Layout layout) {
 }
 
 V2i layoutExtent(Layout layout, int size) {
+    if (isSquareMap(layout)) return V2i(size);
     const V2i faces = extentInFaces(layout);
     return faces.x > 0 ? faces * size : V2i(2 * size, size);
 }
 
 std::optional<int> layoutSize(Layout layout, int width, int height) {
     if (width < 1 || height < 1) return std::nullopt;
+    if (isSquareMap(layout)) return width == height ? std::optional(width) : std::nullopt;
     const V2i faces = extentInFaces(layout);
     if (faces.x == 0) return height;
     const int edge = width / faces.x;
@@ -209,6 +220,7 @@ bool crossCellsBlank(const Panorama& panorama) {
 
 std::optional<V3d> texelDirection(Layout layout, int width, int height, double x, double y) {
     if (layout == Layout::latlong) return latlongDirection(x / width, y / height);
+    if (isSquareMap(layout)) return squareMapDirection(layout, x / width, y / height);
     if (layout == Layout::exrLatlong) {
         return latlongDirection(0.5 + 0.5 * borderToUnit(x, width),
                                 0.5 + 0.5 * borderToUnit(y, height));
@@ -225,11 +237,32 @@ std::optional<V3d> texelDirection(Layout layout, int width, int height, double x
     return cubeDirection({face, turn.left_right ? -s : s, turn.top_bottom ? -t : t}).normalized();
 }
 
+double solidAngleDensity(Layout layout, const V3d& d) {
+    if (layout == Layout::latlong || layout == Layout::exrLatlong) return std::hypot(d.x, d.z);
+    if (layout == Layout::mirrorBall) return 1;
+    if (layout == Layout::angular) {
+        const double across = std::hypot(d.x, d.y);
+        const double theta = std::atan2(across, d.z);
+        return theta < 1e-12 ? 1 : across / theta;
+    }
+    if (layout == Layout::octahedral) {
+        // 1 / |p|^3 at p = d / |d|_1.
+        const double sum = std::abs(d.x) + std::abs(d.y) + std::abs(d.z);
+        return sum * sum * sum;
+    }
+    const double largest = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
+    return largest * largest * largest;
+}
+
 V2d texelPoint(Layout layout, int width, int height, const V3d& direction) {
     if (layout == Layout::latlong || layout == Layout::exrLatlong) {
         const V2d p = latlongPoint(direction);
         if (layout == Layout::latlong) return {p.x * width, p.y * height};
         return {unitToBorder(2 * p.x - 1, width), unitToBorder(2 * p.y - 1, height)};
+    }
+    if (isSquareMap(layout)) {
+        const V2d p = squareMapPoint(layout, direction);
+        return {p.x * width, p.y * height};
     }
     const int edge = width / extentInFaces(layout).x;
     const CubePoint p = cubePoint(direction);
@@ -244,6 +277,7 @@ V2d texelPoint(Layout layout, int width, int height, const V3d& direction) {
 
 double texelSolidAngle(Layout layout, int width, int height, int x, int y) {
     if (layout == Layout::latlong) return latlongPixelSolidAngle(width, height, y);
+    if (isSquareMap(layout)) return squareMapSolidAngle(layout, width, x, y);
     if (layout == Layout::exrLatlong) {
         const V2d u = borderInterval(x, width), v = borderInterval(y, height);
         const double top = 0.5 * kPi * (v.x + 1), bottom = 0.5 * kPi * (v.y + 1);

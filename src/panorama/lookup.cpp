@@ -1,5 +1,7 @@
 #include "panorama/lookup.h"
 
+#include "panorama/square_maps.h"
+
 #include <algorithm>
 
 namespace ibl {
@@ -159,6 +161,55 @@ V3d borderCubeRadiance(const Sampler& sampler, const V3d& direction) {
     return bilinear(at(i, j), at(i + 1, j), at(i, j + 1), at(i + 1, j + 1), fx, fy);
 }
 
+/// Texel (i, j) of an octahedral map, one step outside it at most: its edges are folded about their
+/// middles.
+V3d octahedralTexel(const Panorama& p, int i, int j) {
+    const int n = p.image.width;
+    if (i < 0 || i >= n) {
+        i = i < 0 ? 0 : n - 1;
+        j = n - 1 - j;
+    }
+    if (j < 0 || j >= n) {
+        j = j < 0 ? 0 : n - 1;
+        i = n - 1 - i;
+    }
+    return rgb(p.image.at(std::clamp(i, 0, n - 1), std::clamp(j, 0, n - 1)));
+}
+
+/// The texel of a ball map at (i, j), or, for one whose centre is as far outside the rim, what lies
+/// as far within it on the other side, past -Z.
+std::optional<V3d> ballTexel(const Panorama& p, int i, int j) {
+    const int n = p.image.width;
+    const V2d at((2.0 * i + 1) / n - 1, (2.0 * j + 1) / n - 1);
+    const double rho = at.length();
+    if (rho <= 1) return rgb(p.image.at(i, j));
+    const V2d across = at * ((rho - 2) / rho);
+    const auto index = [n](double s) {
+        return std::clamp(static_cast<int>(0.5 * (s + 1) * n), 0, n - 1);
+    };
+    const auto owner = owningTexel(p.layout, n, index(across.x), index(across.y));
+    if (!owner) return std::nullopt;
+    return rgb(p.image.at(owner->x, owner->y));
+}
+
+V3d squareMapRadiance(const Panorama& p, const V3d& direction) {
+    const V2d at = texelPoint(p.layout, p.image.width, p.image.height, direction) - V2d(0.5);
+    const int i = static_cast<int>(std::floor(at.x)), j = static_cast<int>(std::floor(at.y));
+    const double fx = at.x - i, fy = at.y - j;
+    V3d sum(0);
+    double weights = 0;
+    for (int k = 0; k < 4; ++k) {
+        const int a = i + k % 2, b = j + k / 2;
+        const double weight = (k % 2 ? fx : 1 - fx) * (k / 2 ? fy : 1 - fy);
+        const std::optional<V3d> texel =
+            isBallMap(p.layout) ? ballTexel(p, a, b) : octahedralTexel(p, a, b);
+        if (!texel) continue;
+        sum += *texel * weight;
+        weights += weight;
+    }
+    return sum / weights;
+}
+
 } // namespace
 
 Sampler makeSampler(const Panorama& panorama) {
@@ -170,6 +221,7 @@ Sampler makeSampler(const Panorama& panorama) {
         sampler.south = rowMean(panorama, image.height - 1);
         return sampler;
     }
+    if (isSquareMap(panorama.layout)) return sampler;
     sampler.edge = *layoutSize(panorama.layout, image.width, image.height);
     for (int face = 0; face < 6; ++face) {
         sampler.faces[face] = facePlacement(panorama.layout, sampler.edge, face);
@@ -180,6 +232,7 @@ Sampler makeSampler(const Panorama& panorama) {
 V3d radianceAt(const Sampler& sampler, const V3d& direction, double width) {
     const Layout layout = sampler.panorama->layout;
     if (isLatlong(layout)) return latlongRadiance(sampler, direction, width);
+    if (isSquareMap(layout)) return squareMapRadiance(*sampler.panorama, direction);
     if (layout == Layout::exrCube) return borderCubeRadiance(sampler, direction);
     return cubeRadiance(sampler, direction);
 }

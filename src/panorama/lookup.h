@@ -12,7 +12,8 @@ namespace ibl {
 /// Radiance from `direction` (any length but 0), bilinear between pixel centres: across the seam of
 /// a lat-long, towards the mean of the first or last row at its poles (one value, from wherever the
 /// pole is approached), across the edges of a cube, and with the mean of the three texels that meet
-/// for the missing fourth at its corners, as OpenGL's seamless filtering does. Constant probes give
+/// for the missing fourth at its corners, as OpenGL's seamless filtering does; across
+/// the edges of an octahedral map and the rim of a ball map. Constant probes give
 /// their constant.
 V3d radianceAt(const Panorama& panorama, const V3d& direction);
 

@@ -17,6 +17,9 @@ enum class Layout {
     hcross,     ///< 4N x 3N
     strip,      ///< 6N x N, the faces side by side
     vstrip,     ///< N x 6N, the faces one under the other, in one file
+    angular,    ///< N x N; a disc, +Z in the middle, the angle from it grows with the radius
+    mirrorBall, ///< N x N; a disc, the photograph of a mirror ball seen along -Z
+    octahedral, ///< N x N; +Y in the middle, -Y in the corners
     exrLatlong, ///< OpenEXR's ENVMAP_LATLONG: outer pixel centres on the poles and the seam
     exrCube,    ///< OpenEXR's ENVMAP_CUBE, N x 6N: outer pixel centres on the face edges
 };

@@ -2,6 +2,7 @@
 
 #include "panorama/lookup.h"
 #include "panorama/resample_parts.h"
+#include "panorama/square_maps.h"
 
 #include "core/error.h"
 #include "core/parallel.h"
@@ -123,6 +124,17 @@ void cubeToCube(const Panorama& source, Panorama& result, Enlarging enlarging, i
     });
 }
 
+namespace {
+
+/// What square maps are converted from and to directly: other cubes and the exr layouts are
+/// resampled to the plain layout of their kind and size on the way.
+Layout plainLayout(Layout layout) {
+    if (layout == Layout::exrLatlong) return Layout::latlong;
+    return isCube(layout) ? Layout::faces : layout;
+}
+
+} // namespace
+
 void mergeBorder(Panorama& panorama) {
     Image& image = panorama.image;
     if (panorama.layout == Layout::exrLatlong) {
@@ -193,6 +205,24 @@ Panorama resample(const Panorama& source, Layout to, int size, int threads, Enla
     if (to == source.layout && extent == V2i(source.image.width, source.image.height))
         return source;
 
+    if (isSquareMap(source.layout) || isSquareMap(to)) {
+        const Layout from_plain = plainLayout(source.layout), to_plain = plainLayout(to);
+        if (from_plain != source.layout) {
+            const int source_size =
+                *layoutSize(source.layout, source.image.width, source.image.height);
+            return resample(resample(source, from_plain, source_size, threads, enlarging), to, size,
+                            threads, enlarging);
+        }
+        if (to_plain != to) {
+            return resample(resample(source, to_plain, size, threads, enlarging), to, size, threads,
+                            enlarging);
+        }
+        const V2i plain = layoutExtent(to, size);
+        Panorama result{to, Image(plain.x, plain.y)};
+        std::fill(result.image.pixels.begin(), result.image.pixels.end(), 0.0f);
+        throughSquareMap(source, result, enlarging, threads);
+        return result;
+    }
     Panorama result{to, Image(extent.x, extent.y)};
     if (to == Layout::vcross || to == Layout::hcross) {
         std::fill(result.image.pixels.begin(), result.image.pixels.end(), 0.0f);

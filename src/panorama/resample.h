@@ -11,7 +11,8 @@ enum class Enlarging {
     hold, ///< constant over each pixel, as where it shrinks: energy is kept at any size
 };
 
-/// The probe in another layout, of face edge or lat-long height `size` >= 1.
+/// The probe in another layout, of face edge, lat-long height or edge of a square map `size`
+/// >= 1.
 ///
 /// Where the new texels are larger than the source's pixels, each is the exact mean of the source
 /// over its solid angle (pixels are areas of constant radiance), so energy is kept to float
@@ -19,7 +20,9 @@ enum class Enlarging {
 /// (`radianceAt`), unless it is to hold. Between the two, for texel pitches of 0.8 to 1 pixels,
 /// there is a smooth blend. The same extent of the same layout, or the same face edge within the
 /// cube family, gives the same bits. A constant probe stays constant and a non-negative one
-/// non-negative. Cells of a cross outside its faces are 0.
+/// non-negative. Cells of a cross outside its faces and
+/// texels of a ball map outside its disc are 0. To and from square maps (square_maps.h) means are
+/// by polygons whose edges are straight in the source's image to 0.02 pixels.
 ///
 /// `threads` 0: as many as the machine has; the result does not depend on it.
 /// Throws Error (usage) when size < 1 or the image would have more than 65536 pixels an edge or

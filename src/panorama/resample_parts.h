@@ -1,4 +1,4 @@
-// The four conversions behind `resample`: each fills `result`, whose layout and extent are set and
+// The conversions behind `resample`: each fills `result`, whose layout and extent are set and
 // whose pixels are 0.
 #pragma once
 
@@ -15,6 +15,8 @@ void latlongToLatlong(const Panorama& source, Panorama& result, Enlarging enlarg
 void latlongToCube(const Panorama& source, Panorama& result, Enlarging enlarging, int threads);
 void cubeToLatlong(const Panorama& source, Panorama& result, Enlarging enlarging, int threads);
 void cubeToCube(const Panorama& source, Panorama& result, Enlarging enlarging, int threads);
+/// Where one of the two is a square map, the other one too, a lat-long or `faces`.
+void throughSquareMap(const Panorama& source, Panorama& result, Enlarging enlarging, int threads);
 
 /// The share of the area filter (the rest is interpolation) where a new texel is `ratio` old pixels
 /// wide: none up to 0.8, all from 1 on, smooth between.

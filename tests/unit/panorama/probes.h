@@ -10,9 +10,10 @@
 
 namespace ibl::test {
 
-constexpr std::array<Layout, 8> kAllLayouts{Layout::latlong,    Layout::faces,  Layout::vcross,
-                                            Layout::hcross,     Layout::strip,  Layout::vstrip,
-                                            Layout::exrLatlong, Layout::exrCube};
+constexpr std::array<Layout, 11> kAllLayouts{
+    Layout::angular, Layout::mirrorBall, Layout::octahedral, Layout::latlong,
+    Layout::faces,   Layout::vcross,     Layout::hcross,     Layout::strip,
+    Layout::vstrip,  Layout::exrLatlong, Layout::exrCube};
 
 inline V3d pixel(const Panorama& p, int x, int y) {
     const float* v = p.image.at(x, y);

@@ -1,0 +1,139 @@
+#include "panorama/square_maps.h"
+
+#include "panorama/lookup.h"
+#include "panorama/resample.h"
+#include "unit/panorama/probes.h"
+
+#include <gtest/gtest.h>
+
+namespace ibl {
+namespace {
+
+constexpr std::array<Layout, 3> kSquareMaps{Layout::angular, Layout::mirrorBall,
+                                            Layout::octahedral};
+
+void expectAt(Layout layout, double u, double v, const V3d& expected) {
+    const auto d = squareMapDirection(layout, u, v);
+    ASSERT_TRUE(d) << layoutName(layout) << " " << u << " " << v;
+    EXPECT_LT((*d - expected.normalized()).length(), 1e-12)
+        << layoutName(layout) << " " << u << " " << v << ": " << d->x << " " << d->y << " " << d->z;
+}
+
+// Left of the middle of an angular map, seen from inside, is +X; of the photograph of a ball it is
+// -X.
+TEST(SquareMaps, MarkedPoints) {
+    expectAt(Layout::angular, 0.5, 0.5, {0, 0, 1});
+    expectAt(Layout::angular, 0.25, 0.5, {1, 0, 0});
+    expectAt(Layout::angular, 0.75, 0.5, {-1, 0, 0});
+    expectAt(Layout::angular, 0.5, 0.25, {0, 1, 0});
+    expectAt(Layout::angular, 0.5, 0.75, {0, -1, 0});
+    expectAt(Layout::angular, 0.625, 0.5, {-1, 0, 1});
+    const double r = std::sqrt(0.125); // rho = sqrt(1/2)
+    expectAt(Layout::mirrorBall, 0.5, 0.5, {0, 0, 1});
+    expectAt(Layout::mirrorBall, 0.5 + r, 0.5, {1, 0, 0});
+    expectAt(Layout::mirrorBall, 0.5 - r, 0.5, {-1, 0, 0});
+    expectAt(Layout::mirrorBall, 0.5, 0.5 - r, {0, 1, 0});
+    expectAt(Layout::mirrorBall, 0.5, 0.5 + r, {0, -1, 0});
+    expectAt(Layout::mirrorBall, 1, 0.5, {0, 0, -1});
+    expectAt(Layout::octahedral, 0.5, 0.5, {0, 1, 0});
+    expectAt(Layout::octahedral, 1, 0.5, {1, 0, 0});
+    expectAt(Layout::octahedral, 0, 0.5, {-1, 0, 0});
+    expectAt(Layout::octahedral, 0.5, 1, {0, 0, 1});
+    expectAt(Layout::octahedral, 0.5, 0, {0, 0, -1});
+    for (double u : {0.0, 1.0})
+        for (double v : {0.0, 1.0})
+            expectAt(Layout::octahedral, u, v, {0, -1, 0});
+    expectAt(Layout::octahedral, 0.75, 0.875, {1, -1, 3}); // p = (0.5, 0.75) is folded to (.25, .5)
+    EXPECT_FALSE(squareMapDirection(Layout::angular, 0.01, 0.01));
+    EXPECT_FALSE(squareMapDirection(Layout::mirrorBall, 0.99, 0.2));
+}
+
+// Against the midpoint rule on the definition: what a texel owns, a point each.
+TEST(SquareMaps, SolidAnglesAreWhatTheDensityIntegratesTo) {
+    for (Layout layout : kSquareMaps) {
+        for (int n : {1, 2, 3, 6, 9, 16}) {
+            const int points = 400;
+            std::vector<double> expected(static_cast<std::size_t>(n) * n, 0.0);
+            double density_sum = 0;
+            for (int k = 0; k < n * n * points; ++k) {
+                // A rank-one lattice over the square.
+                const double u = (k + 0.5) / (n * n * points), g = k * 0.6180339887498949;
+                const double v = g - std::floor(g);
+                const auto d = squareMapDirection(layout, u, v);
+                if (!d) continue;
+                const auto at =
+                    owningTexel(layout, n, static_cast<int>(u * n), static_cast<int>(v * n));
+                ASSERT_TRUE(at);
+                const double weight = solidAngleDensity(layout, *d);
+                expected[static_cast<std::size_t>(at->y) * n + at->x] += weight;
+                density_sum += weight;
+            }
+            double sum = 0, worst = 0;
+            for (int y = 0; y < n; ++y) {
+                for (int x = 0; x < n; ++x) {
+                    const double w = squareMapSolidAngle(layout, n, x, y);
+                    sum += w;
+                    const double e = expected[static_cast<std::size_t>(y) * n + x];
+                    worst = std::max(worst, std::abs(w - e / density_sum * 4 * kPi));
+                }
+            }
+            EXPECT_NEAR(sum, 4 * kPi, 1e-9) << layoutName(layout) << " " << n;
+            EXPECT_LT(worst * n * n / (4 * kPi), 0.05) << layoutName(layout) << " " << n;
+        }
+    }
+}
+
+// Interpolation is continuous across the octahedron's folds and past a ball map's rim.
+TEST(SquareMaps, LookupsHaveNoSeam) {
+    const auto scene = [](const V3d& d) { return V3d(1 + d.x, 1 + d.y, 1 + d.x * d.z); };
+    for (Layout layout : {Layout::angular, Layout::octahedral}) {
+        const Panorama map = test::filled(layout, 64, 64, scene);
+        for (int k = 0; k < 2000; ++k) {
+            const double phi = 0.1 * k, z = 1 - 2 * (k + 0.5) / 2000;
+            const double r = std::sqrt(1 - z * z);
+            const V3d d(r * std::cos(phi), r * std::sin(phi), z);
+            EXPECT_LT((radianceAt(map, d) - scene(d)).length(), 0.02)
+                << layoutName(layout) << " " << d.x << " " << d.y << " " << d.z;
+        }
+    }
+    const Panorama map = test::noise(Layout::octahedral, 8, 8, 3);
+    for (double angle = 0; angle < 6.28; angle += 0.1) {
+        // Either side of the map's border: the lower half's meridians of the axes.
+        for (const V3d& across : {V3d(1, 0, 0), V3d(0, 0, 1)}) {
+            const V3d along = across.x > 0 ? V3d(0, 0, 1) : V3d(1, 0, 0);
+            const V3d d = V3d(0, -1, 0) * std::abs(std::sin(angle)) + along * std::cos(angle);
+            const V3d a = radianceAt(map, d + across * 1e-9),
+                      b = radianceAt(map, d - across * 1e-9);
+            EXPECT_LT((a - b).length(), 1e-6) << angle;
+        }
+    }
+}
+
+TEST(SquareMaps, ShrinkingKeepsEnergyOfASunAnywhere) {
+    double worst = 0;
+    for (Layout layout : kSquareMaps) {
+        for (int k = 0; k < 40; ++k) {
+            Panorama source =
+                test::filled(Layout::latlong, 64, 32, [](const V3d&) { return V3d(1e-3); });
+            source.image.at((k * 29) % 64, (k * 13) % 32)[0] = 1e6f;
+            const Panorama map = resample(source, layout, 13, 2);
+            worst = std::max(worst, std::abs(test::energy(map).x / test::energy(source).x - 1));
+            EXPECT_NEAR(test::energy(map).y / test::energy(source).y, 1, 1e-6);
+        }
+        for (int k = 0; k < 40; ++k) {
+            Panorama source = test::filled(layout, 33, 33, [](const V3d&) { return V3d(1e-3); });
+            const int x = 6 + (k * 7) % 21, y = 6 + (k * 11) % 21;
+            source.image.at(x, y)[0] = 1e6f;
+            for (Layout to : {Layout::latlong, Layout::faces}) {
+                const Panorama map = resample(source, to, 6, 2);
+                worst = std::max(worst, std::abs(test::energy(map).x / test::energy(source).x - 1));
+            }
+        }
+    }
+    RecordProperty("worst", std::to_string(worst));
+    std::printf("worst energy error %g\n", worst);
+    EXPECT_LT(worst, 5e-3);
+}
+
+} // namespace
+} // namespace ibl
