@@ -19,7 +19,7 @@ struct DiffuseOptions {
 
 void runDiffuse(const DiffuseOptions& options) {
     Session session("diffuse", options.common);
-    const WriteOptions how = writeOptions(options.output, options.common);
+    const WriteOptions how = writeOptions(options.output, options.common, options.to);
     const Image latlong = latlongOf(session.readProbe(options.probe), session.threads());
     const bool is_latlong = options.to == Layout::latlong;
     const PrefilterRequest request{
