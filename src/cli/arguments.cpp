@@ -68,7 +68,7 @@ void bindType(CLI::App& app, std::optional<PixelType>& type) {
            [&type](const std::string& text) {
                type = text == "half" ? PixelType::half : PixelType::float32;
            },
-           "Pixels of EXR files (default float)")
+           "Pixels of EXR, KTX2 and DDS files (default float)")
         ->check(CLI::IsMember({"half", "float"}))
         ->type_name("TYPE")
         ->group("Output");
@@ -112,6 +112,16 @@ CLI::Option* addTriple(CLI::App& app, const std::string& names, Imath::V3d& valu
         ->delimiter(',')
         ->expected(3)
         ->type_name(type_name);
+}
+
+WriteOptions writeOptions(const ImageOutputOptions& output, const CommonOptions& common,
+                          Layout to) {
+    const WriteOptions how = writeOptions(output, common);
+    if (to != Layout::faces && isCubeContainer(output.output, how)) {
+        throw Error(ExitCode::usage, output.output + ": .ktx2 and .dds hold faces, not " +
+                                         std::string(layoutName(to)) + "; leave out --to");
+    }
+    return how;
 }
 
 WriteOptions writeOptions(const ImageOutputOptions& output, const CommonOptions& common) {

@@ -61,5 +61,7 @@ CLI::Option* addTriple(CLI::App& app, const std::string& names, Imath::V3d& valu
 /// How to write the output. Throws Error (usage) for standard output without a format, and for a
 /// pixel type where the format has its own.
 WriteOptions writeOptions(const ImageOutputOptions& output, const CommonOptions& common);
+/// The same for a probe in that layout; .ktx2 and .dds hold no other than faces.
+WriteOptions writeOptions(const ImageOutputOptions& output, const CommonOptions& common, Layout to);
 
 } // namespace ibl

@@ -30,7 +30,7 @@ int matchingSize(const Panorama& source, Layout to) {
 
 void runConvert(const ConvertOptions& options) {
     Session session("convert", options.common);
-    const WriteOptions how = writeOptions(options.output, options.common);
+    const WriteOptions how = writeOptions(options.output, options.common, options.to);
     const Panorama source = session.readProbe(options.probe);
     const int size = options.size.value_or(matchingSize(source, options.to));
     const Panorama result = session.stage(

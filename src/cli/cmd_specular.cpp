@@ -79,7 +79,7 @@ Lobe lobeOf(const SpecularOptions& options) {
     return lobe;
 }
 
-std::vector<PrefilterRequest> requestsOf(const SpecularOptions& options) {
+std::vector<PrefilterRequest> requestsOf(const SpecularOptions& options, const WriteOptions& how) {
     const int size = options.size.value_or(options.to == Layout::latlong ? 512 : 256);
     if (options.levels) {
         if (*options.levels > maxLevels(size)) {
@@ -88,7 +88,7 @@ std::vector<PrefilterRequest> requestsOf(const SpecularOptions& options) {
                                              " has at most " + std::to_string(maxLevels(size)) +
                                              " levels; ask for fewer");
         }
-        if (options.output.output == "-") {
+        if (options.output.output == "-" && !isCubeContainer("-", how)) {
             throw Error(
                 ExitCode::usage,
                 "-: a chain is several files and does not fit standard output; name a file");
@@ -101,13 +101,21 @@ std::vector<PrefilterRequest> requestsOf(const SpecularOptions& options) {
 
 void runSpecular(const SpecularOptions& options) {
     Session session("specular", options.common);
-    const WriteOptions how = writeOptions(options.output, options.common);
-    const std::vector<PrefilterRequest> requests = requestsOf(options);
+    const WriteOptions how = writeOptions(options.output, options.common, options.to);
+    const std::vector<PrefilterRequest> requests = requestsOf(options, how);
     const Panorama latlong{Layout::latlong,
                            latlongOf(session.readProbe(options.probe), session.threads())};
     const auto results = runPrefilter(session, latlong, requests, options.quality);
     if (options.levels) reportRoughness(session, 0, *options.levels, options.roughness_map);
     session.stage("write", [&] {
+        const std::string& output = options.output.output;
+        if (options.levels && isCubeContainer(output, how)) {
+            std::vector<const Image*> levels;
+            for (const PrefilterResult& level : results)
+                levels.push_back(&level.map.image);
+            session.write(output, levels, how);
+            return;
+        }
         for (std::size_t k = 0; k < results.size(); ++k) {
             const std::string name = options.levels
                                          ? levelName(options.output.output, static_cast<int>(k))

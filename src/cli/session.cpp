@@ -137,12 +137,19 @@ void Session::reportLosses(const WriteLosses& losses, const std::string& path,
 void Session::write(const std::string& path, const Panorama& panorama,
                     const WriteOptions& options) {
     reportLosses(writeProbe(outputs_, path, panorama, options), path, options);
+    if (isCubeContainer(path, options)) return addOutput(path);
     for (const std::string& name : probeFileNames(path, panorama.layout))
         addOutput(name);
 }
 
 void Session::write(const std::string& path, const Image& image, const WriteOptions& options) {
     reportLosses(writeImage(outputs_, path, image, options), path, options);
+    addOutput(path);
+}
+
+void Session::write(const std::string& path, std::span<const Image* const> levels,
+                    const WriteOptions& options) {
+    reportLosses(writeCubeMap(outputs_, path, levels, options), path, options);
     addOutput(path);
 }
 

@@ -11,6 +11,7 @@
 
 #include <chrono>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -56,6 +57,9 @@ public:
     /// Adds an image or a probe to the outputs and says what the format could not hold.
     void write(const std::string& path, const Panorama& panorama, const WriteOptions& options);
     void write(const std::string& path, const Image& image, const WriteOptions& options);
+    /// A cube map with its levels in one container (writeCubeMap).
+    void write(const std::string& path, std::span<const Image* const> levels,
+               const WriteOptions& options);
     void writeText(const std::string& path, std::string_view text);
 
     OutputSet& outputs() { return outputs_; }

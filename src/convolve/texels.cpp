@@ -52,8 +52,9 @@ void addTexel(Layout layout, int width, int height, int x, int y, const Footprin
             const V2d p = latlongPoint(d);
             points.u.push_back(p.x);
             points.v.push_back(p.y);
+            // At a pole that is a texel's centre the density is 0.
             points.share.push_back(rule.weights[a] * rule.weights[b] *
-                                   solidAngleDensity(layout, d));
+                                   std::max(1e-300, solidAngleDensity(layout, d)));
             total += points.share.back();
         }
     }

@@ -1,6 +1,7 @@
 #include "image/write.h"
 
 #include "core/error.h"
+#include "image/cube_container.h"
 #include "image/exr.h"
 #include "image/oiio.h"
 #include "image/png.h"
@@ -51,12 +52,35 @@ WriteLosses& WriteLosses::operator+=(const WriteLosses& other) {
     return *this;
 }
 
+bool isCubeContainer(const std::string& path, const WriteOptions& options) {
+    if (path == "-" && options.format.empty()) return false;
+    if (options.format.empty() && !std::filesystem::path(path).has_extension()) return false;
+    const std::string format = formatOf(path, options);
+    return format == "ktx2" || format == "dds";
+}
+
+WriteLosses writeCubeMap(OutputSet& outputs, const std::string& path,
+                         std::span<const Image* const> levels, const WriteOptions& options) {
+    if (!options.compression.empty()) {
+        throw Error(ExitCode::usage, path + ": only OpenEXR files have a compression to choose; "
+                                            "leave it out, or write .exr");
+    }
+    OutputFile& file = outputs.add(path);
+    return formatOf(path, options) == "dds" ? writeDds(file, levels, options.type)
+                                            : writeKtx2(file, levels, options.type);
+}
+
 WriteLosses writeImage(OutputSet& outputs, const std::string& path, const Image& image,
                        const WriteOptions& options) {
     if (image.width < 1 || image.height < 1 || (image.channels != 3 && image.channels != 4)) {
         throw std::logic_error("writeImage takes RGB or RGBA pixels");
     }
     const std::string format = formatOf(path, options);
+    if (isCubeContainer(path, options)) {
+        throw Error(ExitCode::usage, path + ": " + format +
+                                         " files hold cube maps, not this image; write another "
+                                         "format");
+    }
     if (format != "exr" && !(options.compression.empty() && options.envmap.empty())) {
         throw Error(ExitCode::usage, path + ": only OpenEXR files have a compression or envmap to "
                                             "choose; leave it out, or write .exr");
@@ -71,7 +95,8 @@ WriteLosses writeImage(OutputSet& outputs, const std::string& path, const Image&
 std::vector<std::string> describeLosses(const WriteLosses& losses, const std::string& path,
                                         const WriteOptions& options) {
     const std::string format = formatOf(path, options);
-    const bool wide = format == "exr" || isTiff(format); // half, or nothing is lost
+    const bool wide = format == "exr" || format == "ktx2" || format == "dds" ||
+                      isTiff(format); // half, or nothing is lost
     const std::string largest = wide ? "65504" : isRadiance(format) ? "1.7e38" : "1";
     std::vector<std::string> lines;
     const auto add = [&](std::size_t count, const std::string& what, const std::string& as) {

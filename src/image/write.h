@@ -5,6 +5,7 @@
 #include "image/output_set.h"
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,16 @@ struct WriteLosses {
 /// Error(ExitCode::missing) if OpenImageIO is needed and not there.
 WriteLosses writeImage(OutputSet& outputs, const std::string& path, const Image& image,
                        const WriteOptions& options = {});
+
+/// Whether that file is a KTX 2 or DDS container, which holds a whole cube map: by
+/// `options.format`, otherwise by the extension ktx2 or dds.
+bool isCubeContainer(const std::string& path, const WriteOptions& options = {});
+
+/// Writes a cube map with its levels in one such file. Levels are N x 6N pixels of RGB, from the
+/// largest on, each half as wide as the one before. Pixels are RGBA of `options.type`. Throws as
+/// writeImage does.
+WriteLosses writeCubeMap(OutputSet& outputs, const std::string& path,
+                         std::span<const Image* const> levels, const WriteOptions& options = {});
 
 /// The losses in words, one line for each kind that occurred: "12 values above 65504 were written
 /// as 65504". `path` and `options` as given to writeImage: they say what the format's limits are.

@@ -130,6 +130,15 @@ WriteLosses writeProbe(OutputSet& outputs, const std::string& path, const Panora
     WriteOptions with_envmap = options;
     if (panorama.layout == Layout::exrLatlong) with_envmap.envmap = "latlong";
     if (panorama.layout == Layout::exrCube) with_envmap.envmap = "cube";
+    if (isCubeContainer(path, options)) {
+        if (panorama.layout != Layout::faces) {
+            throw Error(ExitCode::usage, path + ": .ktx2 and .dds hold faces, not " +
+                                             std::string(layoutName(panorama.layout)) +
+                                             "; write another format");
+        }
+        const Image* level = &panorama.image;
+        return writeCubeMap(outputs, path, {&level, 1}, options);
+    }
     if (panorama.layout != Layout::faces) {
         return writeImage(outputs, path, panorama.image, with_envmap);
     }

@@ -35,7 +35,8 @@ ProbeFile readProbe(const std::string& path, const ReadProbeOptions& options = {
 std::vector<std::string> probeFileNames(const std::string& path, Layout layout);
 
 /// Adds a probe to the set of outputs, under the names above. The exr layouts set OpenEXR's envmap
-/// attribute, which other formats refuse. Six faces cannot go to "-".
+/// attribute, which other formats refuse. Six faces cannot go to "-",
+/// but they are one file in a cube container, which refuses other layouts.
 WriteLosses writeProbe(OutputSet& outputs, const std::string& path, const Panorama& panorama,
                        const WriteOptions& options = {});
 

@@ -13,9 +13,11 @@ namespace ibl {
 namespace {
 
 /// Quadrilaterals bend by no more than this many source pixels...
-constexpr double kBend = 0.02;
-/// ...unless they have been quartered this often: then the source is read at their middle.
+constexpr double kBend = 0.01;
+/// ...unless they have been quartered this often: then by this many, and beyond, across a fold, rim
+/// or face, the source is read at their middle.
 constexpr int kMostQuarterings = 6;
+constexpr double kMostBend = 0.5;
 /// Corners stand this much inside, because texels' edges are where cubes' faces meet and discs end.
 constexpr double kInside = 1e-9;
 
@@ -91,12 +93,14 @@ private:
         const double x0 = x + kInside, x1 = x + size - kInside;
         const double y0 = y + kInside, y1 = y + size - kInside;
         const Image& image = result_.image;
+        if (isOutside(x, y, size)) return;
         const auto middle = texelDirection(result_.layout, image.width, image.height,
                                            x + 0.5 * size, y + 0.5 * size);
         const V2d centre = middle ? placeOf(*middle) : V2d(0);
         std::vector<V2d> quad{placeOf(direction(x0, y0)), placeOf(direction(x1, y0)),
                               placeOf(direction(x1, y1)), placeOf(direction(x0, y1))};
-        if (middle && isFlat(centre, quad)) return readQuad(quad);
+        if (middle && isFlat(centre, quad, depth < kMostQuarterings ? kBend : kMostBend))
+            return readQuad(quad);
         if (depth < kMostQuarterings) {
             const double half = 0.5 * size;
             for (int k = 0; k < 4; ++k)
@@ -109,12 +113,20 @@ private:
         add(static_cast<int>(centre.x), static_cast<int>(centre.y), solid_angle);
     }
 
+    /// Whether a square lies outside a ball map's disc.
+    bool isOutside(double x, double y, double size) const {
+        if (!isBallMap(result_.layout)) return false;
+        const double middle = 0.5 * result_.image.width;
+        return std::hypot(std::clamp(middle, x, x + size) - middle,
+                          std::clamp(middle, y, y + size) - middle) > middle;
+    }
+
     /// Steradians to a pixel of the result where its density is 1.
     double unitDensity() const {
         return steradiansPerPixel(result_.layout, result_.image.width, result_.image.height);
     }
 
-    bool isFlat(const V2d& centre, std::vector<V2d>& quad) const {
+    bool isFlat(const V2d& centre, std::vector<V2d>& quad, double bend) const {
         V2d mean(0);
         for (V2d& corner : quad) {
             if (columns_ > 0) {
@@ -126,7 +138,7 @@ private:
             }
             mean += corner * 0.25;
         }
-        return std::abs(mean.x - centre.x) < kBend && std::abs(mean.y - centre.y) < kBend;
+        return std::abs(mean.x - centre.x) < bend && std::abs(mean.y - centre.y) < bend;
     }
 
     void readQuad(const std::vector<V2d>& quad) {
@@ -193,10 +205,15 @@ private:
 };
 
 /// Distance between the centres of an image's pixels about (x, y), radians: of lat-longs from row
-/// to row.
+/// to row, of angular maps from ring to ring; a mirror ball's rings widen towards its rim.
 double pitchAt(const Panorama& p, int x, int y) {
     const int width = p.image.width, height = p.image.height;
     if (p.layout == Layout::latlong) return kPi / height;
+    if (p.layout == Layout::angular) return 2 * kPi / width;
+    if (p.layout == Layout::mirrorBall) {
+        const double rho = std::hypot((2.0 * x + 1) / width - 1, (2.0 * y + 1) / width - 1);
+        return 4.0 / width / std::sqrt(std::max(1.0 / width, 1 - rho * rho));
+    }
     return std::sqrt(texelSolidAngle(p.layout, width, height, x, y));
 }
 

@@ -1,5 +1,7 @@
 #include "panorama/lookup.h"
 
+#include "panorama/square_maps.h"
+
 #include "unit/panorama/probes.h"
 
 #include <gtest/gtest.h>
@@ -48,8 +50,13 @@ TEST(Lookup, FollowsASmoothProbeAcrossAllSeams) {
         for (int size : {16, 17, 64}) {
             const V2i e = layoutExtent(layout, size);
             const Panorama p = filled(layout, e.x, e.y, smooth);
-            const double bound = 4.0 / (size * size) + (isCubeFamily(layout) ? 0.15 / size : 0);
+            // The middle of an angular map is coarser, and past a ball map's rim the nearest texel
+            // stands for the row beyond; an octahedron has creases; a mirror ball is singular at
+            // -Z.
+            double bound = 4.0 / (size * size) + (isCubeFamily(layout) ? 0.15 / size : 0);
+            if (isSquareMap(layout)) bound = 8.0 / (size * size) + 1.2 / size;
             for (const V3d& d : directions()) {
+                if (layout == Layout::mirrorBall && d.z < -0.6 * d.length()) continue;
                 const V3d expected = smooth(d.normalized());
                 EXPECT_LT((radianceAt(p, d) - expected).length(), bound)
                     << layoutName(layout) << " " << size << " at " << d.x << " " << d.y << " "

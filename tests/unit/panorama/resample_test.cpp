@@ -3,6 +3,7 @@
 #include "panorama/builtin.h"
 #include "panorama/lookup.h"
 #include "panorama/resample_parts.h"
+#include "panorama/square_maps.h"
 #include "unit/panorama/probes.h"
 
 #include "core/error.h"
@@ -262,7 +263,10 @@ TEST(Resample, EnlargingInterpolates) {
             const bool from_latlong = isLatlong(from), to_latlong = isLatlong(to);
             const V2i e = layoutExtent(from, 6);
             const Panorama source = consistentNoise(from, e.x, e.y);
-            const Panorama result = resample(source, to, 40, 0);
+            const int size = isSquareMap(to) ? 80 : 40;
+            // Filtered at a ball map's rim; by way of plain layouts from those of OpenEXR.
+            if (isBallMap(to) || (isSquareMap(to) && from >= Layout::exrLatlong)) continue;
+            const Panorama result = resample(source, to, size, 0);
             for (int y = 1; y + 1 < result.image.height; y += 3) {
                 for (int x = 1; x + 1 < result.image.width; x += 3) {
                     const auto d = texelDirection(to, result.image.width, result.image.height,
