@@ -32,9 +32,10 @@ std::vector<int> leavesOf(const CutTree& tree, std::size_t cuts);
 /// is most nearly equal. The last round ends when the count is reached.
 CutTree medianCut(const SummedAreaTable& table, int count);
 
-/// The same, always cutting the region of greatest variance, along either side, so that the larger
-/// variance of the two parts is least. The variance of a region is the luminance-weighted sum of
-/// squared distances, on the unit sphere, from its centroid.
+/// The same, but a cut is along either side, so that the larger variance of the two parts is least:
+/// the variance of a region is the luminance-weighted sum of squared distances, on the unit sphere,
+/// from its centroid. The region cut next is that of the greatest energy times radius, the root of
+/// energy times variance: by measurement better than the greatest variance.
 CutTree varianceCut(const MomentTable& table, int count);
 
 /// What a region holds; adds up over regions.

@@ -67,11 +67,12 @@ std::string lightsCsv(const LightSet& set) {
     const V3d total = totalIrradiance(set.lights);
     for (const Light& light : set.lights) {
         csv += std::to_string(light.id);
-        for (const V3d& v : {light.direction, light.irradiance}) {
-            for (int c = 0; c < 3; ++c)
-                csv += "," + text(v[c]);
+        for (const double value : {light.direction.x, light.direction.y, light.direction.z,
+                                   light.irradiance.x, light.irradiance.y, light.irradiance.z,
+                                   light.solid_angle, energyShare(light, total)}) {
+            csv.append(1, ',').append(text(value));
         }
-        csv += "," + text(light.solid_angle) + "," + text(energyShare(light, total)) + ",";
+        csv += ',';
         if (light.angular_radius) csv += text(*light.angular_radius);
         csv += "\n";
     }

@@ -41,30 +41,66 @@ LightLanes load(const std::vector<Light>& lights, std::size_t begin) {
     return lanes;
 }
 
-void add(const Lanes& p, const Lanes (&wave)[6], LightHarmonics::Parts& out) {
-    for (int i = 0; i < 6; ++i)
-        out[static_cast<std::size_t>(i)] += sum(p * wave[i]);
+using LaneParts = std::array<Lanes, 6>;
+
+LightHarmonics::Parts sum(const LaneParts& parts) {
+    LightHarmonics::Parts total;
+    for (std::size_t i = 0; i < total.size(); ++i)
+        total[i] = sum(parts[i]);
+    return total;
 }
 
-void addLanes(const LightLanes& lanes, LightHarmonics& harmonics) {
-    Lanes sectoral = lanes.x * 0 + std::sqrt(1 / (4 * kPi)); // P_00
-    Lanes re = lanes.x * 0 + 1, im = lanes.x * 0;            // exp(-i m psi)
+/// Lights with what changes from one order m to the next.
+struct Group {
+    LightLanes lanes;
+    Lanes sectoral; ///< P_mm
+    Lanes re, im;   ///< exp(-i m psi)
+};
+
+void addColumn(const Group& group, int m, int degree, std::vector<LaneParts>& even,
+               LaneParts& first) {
+    LaneParts wave;
+    for (std::size_t c = 0; c < 3; ++c) {
+        wave[2 * c] = group.lanes.colour[c] * group.re;
+        wave[2 * c + 1] = group.lanes.colour[c] * group.im;
+    }
+    LaneParts* out = even.data();
+    legendreColumn(m, degree, group.lanes.x, group.sectoral, [&](int l, const Lanes& p) {
+        if (l != 1 && l % 2 != 0) return;
+        LaneParts& to = l == 1 ? first : *out++;
+        for (std::size_t i = 0; i < to.size(); ++i)
+            to[i] += p * wave[i];
+    });
+}
+
+void advance(Group& group, int m) {
+    const LightLanes& lanes = group.lanes;
+    const double next = m + 1;
+    group.sectoral *= lanes.sine * std::sqrt((2 * next + 1) / (2 * next));
+    const Lanes turned = group.re * lanes.cos_psi + group.im * lanes.sin_psi;
+    group.im = group.im * lanes.cos_psi - group.re * lanes.sin_psi;
+    group.re = turned;
+}
+
+/// Lights [begin, end): order by order, so that the sums of one order stay in the cache.
+void addLights(const std::vector<Light>& lights, std::size_t begin, std::size_t end,
+               LightHarmonics& harmonics) {
+    const Lanes zero{};
+    std::vector<Group> groups;
+    for (std::size_t i = begin; i < end; i += kLanes)
+        groups.push_back({load(lights, i), zero + std::sqrt(1 / (4 * kPi)), zero + 1, zero});
+    const std::size_t rows = static_cast<std::size_t>(harmonics.degree / 2) + 1;
     for (int m = 0; m <= harmonics.degree; ++m) {
-        Lanes wave[6];
-        for (int c = 0; c < 3; ++c) {
-            wave[2 * c] = lanes.colour[c] * re;
-            wave[2 * c + 1] = lanes.colour[c] * im;
+        std::vector<LaneParts> even(rows, LaneParts{});
+        LaneParts first{};
+        for (Group& group : groups) {
+            addColumn(group, m, harmonics.degree, even, first);
+            advance(group, m);
         }
-        LightHarmonics::Parts* out = harmonics.even.data() + harmonics.column(m);
-        legendreColumn(m, harmonics.degree, lanes.x, sectoral, [&](int l, const Lanes& p) {
-            if (l == 1) add(p, wave, harmonics.first[static_cast<std::size_t>(m)]);
-            if (l % 2 == 0) add(p, wave, *out++);
-        });
-        const double next = m + 1;
-        sectoral *= lanes.sine * std::sqrt((2 * next + 1) / (2 * next));
-        const Lanes turned = re * lanes.cos_psi + im * lanes.sin_psi;
-        im = im * lanes.cos_psi - re * lanes.sin_psi;
-        re = turned;
+        const std::size_t column = harmonics.column(m);
+        for (std::size_t i = 0; i + static_cast<std::size_t>(m + 1) / 2 < rows; ++i)
+            harmonics.even[column + i] = sum(even[i]);
+        if (m < 2) harmonics.first[static_cast<std::size_t>(m)] = sum(first);
     }
 }
 
@@ -104,8 +140,7 @@ LightHarmonics lightHarmonics(const std::vector<Light>& lights, int degree, int 
     std::vector<LightHarmonics> parts(runs, LightHarmonics(degree));
     parallelFor(runs, threads, [&](std::size_t run) {
         const std::size_t end = std::min(lights.size(), (run + 1) * kRun);
-        for (std::size_t i = run * kRun; i < end; i += kLanes)
-            addLanes(load(lights, i), parts[run]);
+        addLights(lights, run * kRun, end, parts[run]);
     });
     LightHarmonics total(degree);
     for (const LightHarmonics& part : parts)

@@ -2,6 +2,7 @@
 #include "lights/cutting.h"
 
 #include <algorithm>
+#include <cmath>
 #include <queue>
 #include <utility>
 
@@ -44,18 +45,26 @@ std::pair<PixelRegion, PixelRegion> cutRegion(const MomentTable& table, const Pi
     return across.larger <= down.larger ? across.parts : down.parts;
 }
 
+/// What the region's light does to the irradiance, about. Energy W moved by s changes it by W s
+/// where it is moved to first order, and a light at the centroid of luminance moves each channel by
+/// a part of the region's radius s, s^2 the variance over W.
+double priority(const MomentTable& table, const PixelRegion& r) {
+    const double energy = static_cast<double>(table.energy(r));
+    return std::sqrt(energy * table.variance(r));
+}
+
 } // namespace
 
 CutTree varianceCut(const MomentTable& table, int count) {
     CutTree tree;
     tree.nodes.push_back({openingColumn(table), 0, table.width(), table.height()});
-    std::priority_queue<std::pair<double, int>> waiting; // variance, minus the node
+    std::priority_queue<std::pair<double, int>> waiting; // priority, minus the node
     int lit = 0;
     const auto add = [&](int node) {
         const PixelRegion& r = tree.nodes[node];
         if (table.energy(r) <= 0) return;
         ++lit;
-        if (r.width > 1 || r.height > 1) waiting.emplace(table.variance(r), -node);
+        if (r.width > 1 || r.height > 1) waiting.emplace(priority(table, r), -node);
     };
     add(0);
     while (lit < count && !waiting.empty()) {
