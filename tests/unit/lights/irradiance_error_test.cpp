@@ -100,7 +100,7 @@ TEST(IrradianceError, OneLightOfAnEvenSkyIsAlwaysAsWrong) {
 
 TEST(IrradianceError, CentroidsAreBetterThanCentres) {
     const Image image = noise(128, 64, 32);
-    EXPECT_LT(2 * lightsOfProbe(image, LightMethod::median, 64).irradiance_error,
+    EXPECT_LT(1.5 * lightsOfProbe(image, LightMethod::median, 64).irradiance_error,
               lightsOfProbe(image, LightMethod::median, 64, Placement::centre).irradiance_error);
 }
 
@@ -112,21 +112,21 @@ TEST(IrradianceError, OfALightThatIsTheProbe) {
 }
 
 TEST(MaxError, NoSmallerCountOfTheCutsKeepsIt) {
-    const Image image = noise(64, 32, 33);
+    const Image image = noise(32, 16, 33);
     for (const LightMethod method : {LightMethod::median, LightMethod::variance}) {
         LightRequest request;
         request.method = method;
-        request.max_error = 0.02;
+        request.max_error = 0.1;
         const LightSet set = cutLights(image, request, 2);
-        EXPECT_LE(set.irradiance_error, 0.02);
+        EXPECT_LE(set.irradiance_error, 0.1);
         ASSERT_GT(set.lights.size(), 4u);
         for (int count = 1; count < static_cast<int>(set.lights.size()); ++count) {
-            EXPECT_GT(lightsOfProbe(image, method, count).irradiance_error, 0.02)
+            EXPECT_GT(lightsOfProbe(image, method, count).irradiance_error, 0.1)
                 << methodName(method) << " " << count << " of " << set.lights.size();
         }
-        EXPECT_EQ(
-            lightsOfProbe(image, method, static_cast<int>(set.lights.size())).irradiance_error,
-            set.irradiance_error);
+        const int count = static_cast<int>(set.lights.size());
+        EXPECT_NEAR(lightsOfProbe(image, method, count).irradiance_error, set.irradiance_error,
+                    1e-9);
     }
 }
 
