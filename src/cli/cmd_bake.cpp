@@ -5,8 +5,8 @@
 #include "cli/sh_json.h"
 
 #include "core/error.h"
+#include "lights/cut_lights.h"
 #include "lights/lights_json.h"
-#include "lights/median_cut.h"
 
 #include <nlohmann/json.hpp>
 
@@ -96,8 +96,11 @@ void runBake(const BakeOptions& options) {
         requests.push_back(level);
     }
     const auto results = runPrefilter(session, latlong, requests, options.quality);
-    const std::vector<Light> lights = session.stage(
-        "cut", [&] { return medianCut(latlong.image, options.lights, session.threads()); });
+    LightRequest cuts;
+    cuts.count = options.lights;
+    LightSet lights =
+        session.stage("cut", [&] { return cutLights(latlong.image, cuts, session.threads()); });
+    lights.source = options.probe.input;
 
     const ShCoefficients sh =
         session.stage("project", [&] { return projectProbe(latlong.image, 3, session.threads()); });
@@ -112,11 +115,10 @@ void runBake(const BakeOptions& options) {
             session.write(levelName(folder.file("specular.exr"), static_cast<int>(k) - 1),
                           results[k].map, how);
         }
-        session.writeText(folder.file("lights.json"),
-                          lightsJson(lights, options.probe.input, "median"));
+        session.writeText(folder.file("lights.json"), lightsJson(lights));
         session.writeText(folder.file("sh.json"), shJson(sh, options.probe.input, false, 0));
         session.writeText(folder.file("bake.json"),
-                          manifest(options, session.results()["maps"], lights.size()));
+                          manifest(options, session.results()["maps"], lights.lights.size()));
     });
     session.finish();
     folder.keep();

@@ -2,11 +2,19 @@
 #include "cli/commands.h"
 #include "cli/session.h"
 
+#include "core/error.h"
+#include "image/png.h"
+#include "image/source.h"
+#include "lights/cut_lights.h"
+#include "lights/lamp.h"
+#include "lights/light_files.h"
 #include "lights/lights_json.h"
-#include "lights/median_cut.h"
+#include "lights/preview.h"
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <filesystem>
 #include <memory>
 
 namespace ibl {
@@ -15,45 +23,210 @@ namespace {
 struct LightsOptions {
     CommonOptions common;
     ProbeOptions probe;
-    int count = 64;
-    std::string method = "median";
+    std::optional<int> count;
+    std::optional<double> max_error;
+    std::optional<LightMethod> method;
+    std::optional<Placement> placement;
+    bool sun = false;
+    std::string residual;
+    std::string previous;
     std::string output = "-";
+    std::string format;
+    std::string preview;
 };
 
+LightFormat formatOf(const LightsOptions& options) {
+    if (!options.format.empty()) return *lightFormat(options.format);
+    if (options.output == "-") return LightFormat::json;
+    std::string extension = std::filesystem::path(options.output).extension().string();
+    if (!extension.empty()) extension.erase(0, 1);
+    if (const auto format = lightFormat(extension)) return *format;
+    throw Error(ExitCode::usage, options.output + ": the extension says no format of lights; end "
+                                                  "it in .json, .csv, .gltf or .usda, or say "
+                                                  "--format");
+}
+
+void checkOptions(const LightsOptions& options) {
+    const auto refuse = [](const std::string& what) { throw Error(ExitCode::usage, what); };
+    if (!options.residual.empty() && !options.sun)
+        refuse("--residual: without --sun nothing is taken out; add --sun");
+    if (options.residual == "-") refuse("--residual: does not go to standard output; name a file");
+    const bool samples = options.method == LightMethod::importance;
+    if (samples && options.max_error)
+        refuse("--max-error: importance does not search for a count; use median or variance");
+    if (samples && options.placement)
+        refuse("--place: importance places each light itself; leave it out");
+    if (!options.preview.empty() && std::filesystem::path(options.preview).extension() != ".png")
+        refuse("--preview: " + options.preview + ": is written as PNG; end it in .png");
+}
+
+LightSet readPrevious(Session& session, const LightsOptions& options, std::string_view method) {
+    const std::string& name = options.previous;
+    Source source = openSource(name);
+    readWhole(source);
+    session.addInput(name);
+    LightSet previous = readLightsJson(
+        {reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size()}, name);
+    if (previous.method != method) {
+        throw inputError(name, "was made by --method " + previous.method + ", not " +
+                                   std::string(method) + "; use the same for all frames");
+    }
+    return previous;
+}
+
+LightSet cut(Session& session, const LightsOptions& options, const Image& latlong) {
+    LightRequest request;
+    request.method = options.method.value_or(LightMethod::median);
+    request.count = options.count.value_or(request.count);
+    request.max_error = options.max_error;
+    request.placement = options.placement.value_or(Placement::centroid);
+    LightSet previous;
+    if (!options.previous.empty()) {
+        previous = readPrevious(session, options, methodName(request.method));
+        request.previous = &previous;
+        if (!options.count && !previous.lights.empty())
+            request.count = std::min(kMostLights, static_cast<int>(previous.lights.size()));
+    }
+    LightSet set =
+        session.stage("cut", [&] { return cutLights(latlong, request, session.threads()); });
+    const std::string& source = options.probe.input;
+    if (set.lights.empty()) {
+        session.note(source, "black: no lights");
+    } else if (!options.max_error && static_cast<int>(set.lights.size()) < request.count) {
+        session.note(source, "only " + std::to_string(set.lights.size()) + " of " +
+                                 std::to_string(request.count) +
+                                 " lights: no more pixels have energy");
+    }
+    return set;
+}
+
+LightSet takeOutSun(Session& session, const LightsOptions& options, const Image& latlong) {
+    Lamp lamp = session.stage("sun", [&] { return findLamp(latlong, options.probe.input); });
+    LightSet set;
+    set.lights.push_back(lamp.light);
+    set.method = "sun";
+    set.irradiance_error = session.stage(
+        "error", [&] { return lampError(latlong, lamp.residual, lamp.light, session.threads()); });
+    if (!options.residual.empty()) {
+        WriteOptions how;
+        how.threads = session.threads();
+        session.stage("write", [&] {
+            session.write(options.residual, Panorama{Layout::latlong, std::move(lamp.residual)},
+                          how);
+        });
+    }
+    return set;
+}
+
+void writeLights(Session& session, const LightsOptions& options, LightFormat format,
+                 const LightSet& set) {
+    int clamped = 0;
+    std::string text;
+    switch (format) {
+    case LightFormat::json:
+        text = lightsJson(set);
+        break;
+    case LightFormat::csv:
+        text = lightsCsv(set);
+        break;
+    case LightFormat::gltf:
+        text = lightsGltf(set, clamped);
+        break;
+    case LightFormat::usda:
+        text = lightsUsda(set);
+        break;
+    }
+    if (clamped > 0) {
+        session.note(options.output, "negative colours of " + std::to_string(clamped) +
+                                         " lights written as 0: glTF has none");
+    }
+    session.writeText(options.output, text);
+}
+
 void runLights(const LightsOptions& options) {
+    checkOptions(options);
+    const LightFormat format = formatOf(options);
     Session session("lights", options.common);
     const Image latlong = latlongOf(session.readProbe(options.probe), session.threads());
-    const std::vector<Light> lights =
-        session.stage("cut", [&] { return medianCut(latlong, options.count, session.threads()); });
-    if (lights.empty()) {
-        session.note(options.probe.input, "black: no lights");
-    } else if (static_cast<int>(lights.size()) < options.count) {
-        session.note(options.probe.input, "only " + std::to_string(lights.size()) + " of " +
-                                              std::to_string(options.count) +
-                                              " lights: no more pixels have energy");
+    LightSet set =
+        options.sun ? takeOutSun(session, options, latlong) : cut(session, options, latlong);
+    set.source = options.probe.input;
+    session.results()["lights"] = set.lights.size();
+    session.results()["irradiance_error"] = set.irradiance_error;
+    session.stage("write", [&] { writeLights(session, options, format, set); });
+    if (!options.preview.empty()) {
+        session.stage("preview", [&] {
+            const Preview picture = drawPreview(latlong, set.lights);
+            writePng8(session.outputs().add(options.preview), picture.bytes, picture.width,
+                      picture.height, 3, session.threads());
+            session.addOutput(options.preview);
+        });
     }
-    session.results()["lights"] = lights.size();
-    session.writeText(options.output, lightsJson(lights, options.probe.input, options.method));
     session.finish();
+}
+
+void bindCuts(CLI::App& app, LightsOptions& options) {
+    CLI::Option* count =
+        app.add_option("-n,--count", options.count,
+                       "How many lights, 1 to 65536 (default 64, or as many as --previous has)")
+            ->check(CLI::Range(1, kMostLights))
+            ->type_name("N");
+    CLI::Option* error =
+        app.add_option("--max-error", options.max_error,
+                       "The fewest lights whose irradiance has at most this relative RMSE")
+            ->check(CLI::Range(1e-6, 1.0))
+            ->excludes(count)
+            ->type_name("E");
+    CLI::Option* method =
+        app.add_option_function<std::string>(
+               "--method",
+               [&options](const std::string& name) { options.method = methodFromName(name); },
+               "How lights are found (default median). median: Debevec 2005; variance: Viriyothai "
+               "and Debevec 2009; importance: a low-discrepancy set")
+            ->check(CLI::IsMember({"median", "variance", "importance"}))
+            ->type_name("NAME");
+    CLI::Option* place =
+        app.add_option_function<std::string>(
+               "--place",
+               [&options](const std::string& name) {
+                   options.placement = name == "centre" ? Placement::centre : Placement::centroid;
+               },
+               "Where in its region a light stands (default centroid, of its energy)")
+            ->check(CLI::IsMember({"centroid", "centre"}))
+            ->type_name("WHERE");
+    CLI::Option* previous =
+        app.add_option("--previous", options.previous,
+                       "Lights of the frame before, whose identity and order are kept")
+            ->type_name("FILE");
+    CLI::Option* sun =
+        app.add_flag("--sun", options.sun, "The sun or brightest lamp as the only light");
+    for (CLI::Option* other : {count, error, method, place, previous})
+        sun->excludes(other);
+    app.add_option("--residual", options.residual, "With --sun: the probe without it, a lat-long")
+        ->type_name("OUT")
+        ->group("Output");
 }
 
 } // namespace
 
 Command bindLights(CLI::App& root) {
-    CLI::App* app = root.add_subcommand("lights", "Directional lights by median cut, as JSON");
+    CLI::App* app = root.add_subcommand(
+        "lights", "Directional lights by median or variance cut, or the sun, as JSON, glTF, USD");
     auto options = std::make_shared<LightsOptions>();
     bindProbe(*app, options->probe);
-    app->add_option("-n,--count", options->count, "How many lights, 1 to 65536")
-        ->check(CLI::Range(1, 65536))
-        ->type_name("N")
-        ->capture_default_str();
-    app->add_option("--method", options->method, "How the probe is cut: median (Debevec 2005)")
-        ->check(CLI::IsMember({"median"}))
-        ->type_name("NAME")
-        ->capture_default_str();
-    app->add_option("-o,--output", options->output, "JSON file to write, - for standard output")
+    bindCuts(*app, *options);
+    app->add_option("-o,--output", options->output, "File to write, - for standard output")
         ->type_name("OUT")
         ->capture_default_str()
+        ->group("Output");
+    app->add_option("--format", options->format,
+                    "Format instead of what the extension says (on standard output json)")
+        ->check(CLI::IsMember({"json", "csv", "gltf", "usda"}))
+        ->type_name("FORMAT")
+        ->group("Output");
+    app->add_option("--preview", options->preview,
+                    "Picture of the probe, its regions and lights to write")
+        ->type_name("PNG")
         ->group("Output");
     bindCommon(*app, options->common);
     return {app, [options] { runLights(*options); }};

@@ -1,6 +1,10 @@
 #include "lights/lights_json.h"
 
+#include "core/error.h"
+
 #include <nlohmann/json.hpp>
+
+#include <cmath>
 
 namespace ibl {
 namespace {
@@ -11,32 +15,90 @@ Json jsonOf(const V3d& v) {
     return Json::array({v.x, v.y, v.z});
 }
 
+Json jsonOf(const Light& light, const V3d& total) {
+    Json json;
+    json["id"] = light.id;
+    json["direction"] = jsonOf(light.direction);
+    json["irradiance"] = jsonOf(light.irradiance);
+    json["solid_angle"] = light.solid_angle;
+    json["share"] = energyShare(light, total);
+    if (light.angular_radius) json["angular_radius"] = *light.angular_radius;
+    if (light.region) {
+        json["region"] = {{"longitude", light.region->longitude},
+                          {"latitude", light.region->latitude}};
+    }
+    return json;
+}
+
+V3d vectorOf(const Json& json) {
+    return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
+}
+
+Light lightOf(const Json& json) {
+    Light light;
+    light.id = json.at("id").get<int>();
+    light.direction = vectorOf(json.at("direction"));
+    light.irradiance = vectorOf(json.at("irradiance"));
+    light.solid_angle = json.at("solid_angle").get<double>();
+    if (json.contains("angular_radius"))
+        light.angular_radius = json["angular_radius"].get<double>();
+    if (json.contains("region")) {
+        AngularRegion region;
+        for (std::size_t i = 0; i < 2; ++i) {
+            region.longitude[i] = json["region"].at("longitude").at(i).get<double>();
+            region.latitude[i] = json["region"].at("latitude").at(i).get<double>();
+            if (!(std::abs(region.longitude[i]) <= 540 && std::abs(region.latitude[i]) <= 90))
+                throw std::out_of_range("region");
+        }
+        light.region = region;
+    }
+    if (!(std::abs(light.direction.length() - 1) < 1e-3)) throw std::out_of_range("direction");
+    return light;
+}
+
 } // namespace
 
-std::string lightsJson(const std::vector<Light>& lights, const std::string& source,
-                       const std::string& method) {
+std::string lightsJson(const LightSet& set) {
     Json root;
-    root["axes"] =
-        "right-handed, +Y up; a lat-long's centre looks along +Z, +X stands at a quarter "
-        "of its width; longitude = atan2(x, z), latitude = asin(y)";
+    root["axes"] = kLightAxes;
     root["units"] = {{"direction", "unit vector towards the light"},
-                     {"irradiance", "radiance of the source times steradian"},
+                     {"irradiance", kLightUnits},
                      {"solid_angle", "steradian"},
-                     {"region", "degrees, from and to"}};
-    root["source"] = source;
-    root["method"] = method;
-    root["total_irradiance"] = jsonOf(totalIrradiance(lights));
-    Json& list = root["lights"] = Json::array();
-    for (const Light& light : lights) {
-        list.push_back({{"direction", jsonOf(light.direction)},
-                        {"irradiance", jsonOf(light.irradiance)},
-                        {"solid_angle", light.solid_angle},
-                        {"region",
-                         {{"longitude", {light.longitude[0], light.longitude[1]}},
-                          {"latitude", {light.latitude[0], light.latitude[1]}}}}});
+                     {"share", "of the luminance of all lights, 0.2125 R + 0.7154 G + 0.0721 B"},
+                     {"angular_radius", "radian"},
+                     {"region", "degrees, from and to"},
+                     {"irradiance_error", "relative RMSE over all normals and channels"}};
+    root["source"] = set.source;
+    root["method"] = set.method;
+    const V3d total = totalIrradiance(set.lights);
+    root["total_irradiance"] = jsonOf(total);
+    root["irradiance_error"] = set.irradiance_error;
+    if (set.change) {
+        root["change"] = {{"light_change", set.change->light_change},
+                          {"movement", set.change->movement},
+                          {"kept", set.change->kept},
+                          {"same_regions", set.change->same_regions}};
     }
+    Json& list = root["lights"] = Json::array();
+    for (const Light& light : set.lights)
+        list.push_back(jsonOf(light, total));
     // A source may be a file name in any encoding: what is not UTF-8 is replaced.
     return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+LightSet readLightsJson(std::string_view text, const std::string& name) {
+    LightSet set;
+    try {
+        const Json root = Json::parse(text);
+        set.source = root.at("source").get<std::string>();
+        set.method = root.at("method").get<std::string>();
+        set.irradiance_error = root.at("irradiance_error").get<double>();
+        for (const Json& light : root.at("lights"))
+            set.lights.push_back(lightOf(light));
+    } catch (const std::exception&) {
+        throw inputError(name, "is no JSON of ibltool lights; give one that it wrote");
+    }
+    return set;
 }
 
 } // namespace ibl

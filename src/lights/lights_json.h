@@ -1,18 +1,25 @@
 // The lights as JSON, units and axes named.
 #pragma once
 
-#include "lights/median_cut.h"
+#include "lights/light.h"
 
 #include <string>
-#include <vector>
+#include <string_view>
 
 namespace ibl {
 
-/// One JSON object, indented, ending in a newline: `axes`, `units`, `source`, `method`,
-/// `total_irradiance` and `lights`, brightest first, each with `direction` (unit, towards the
-/// light), `irradiance` ([r, g, b]), `solid_angle` and `region` (`longitude` and `latitude`, each
-/// [from, to]). Numbers are the shortest that read back as the same double.
-std::string lightsJson(const std::vector<Light>& lights, const std::string& source,
-                       const std::string& method);
+/// What every format says of axes and units.
+inline constexpr const char* kLightAxes =
+    "right-handed, +Y up; a lat-long's centre looks along +Z, +X stands at a quarter of its width; "
+    "longitude = atan2(x, z), latitude = asin(y)";
+inline constexpr const char* kLightUnits = "radiance of the source times steradian";
+
+/// One JSON object, indented, ending in a newline; testdata/lights.schema.json and
+/// ibltool-lights(1) say what is in it. Numbers are the shortest that read back as the same double.
+std::string lightsJson(const LightSet& set);
+
+/// What lightsJson wrote, but for `change`. `name` is for messages.
+/// Throws Error (input) when the text is not such an object.
+LightSet readLightsJson(std::string_view text, const std::string& name);
 
 } // namespace ibl

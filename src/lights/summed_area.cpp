@@ -1,26 +1,20 @@
 #include "lights/summed_area.h"
 
 #include "core/parallel.h"
+#include "lights/light.h"
 #include "panorama/conventions.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace ibl {
-namespace {
-
-double luminance(const float* rgb) {
-    return std::max(0.0,
-                    kLuminanceRed * rgb[0] + kLuminanceGreen * rgb[1] + kLuminanceBlue * rgb[2]);
-}
-
-double totalEnergy(const Image& latlong, int threads) {
+double litEnergy(const Image& latlong, int threads) {
     std::vector<double> rows(static_cast<std::size_t>(latlong.height));
     parallelFor(rows.size(), threads, [&](std::size_t j) {
         const float* rgb = latlong.row(static_cast<int>(j));
         double sum = 0;
         for (int i = 0; i < latlong.width; ++i)
-            sum += luminance(rgb + 3 * i);
+            sum += litLuminance(rgb + 3 * i);
         rows[j] = sum * latlongPixelSolidAngle(latlong.width, latlong.height, static_cast<int>(j));
     });
     double total = 0;
@@ -29,14 +23,12 @@ double totalEnergy(const Image& latlong, int threads) {
     return total;
 }
 
-} // namespace
-
 SummedAreaTable::SummedAreaTable(const Image& latlong, int threads)
     : width_(latlong.width), height_(latlong.height) {
     const std::size_t stride = static_cast<std::size_t>(width_) + 1;
     sums_.resize(stride * (static_cast<std::size_t>(height_) + 1));
     std::fill_n(sums_.begin(), stride, 0);
-    const double total = totalEnergy(latlong, threads);
+    const double total = litEnergy(latlong, threads);
     if (total > 0) scale_ = std::ldexp(1.0, 62) / total;
 
     // Prefix sums along the rows, then down the columns.
@@ -47,7 +39,7 @@ SummedAreaTable::SummedAreaTable(const Image& latlong, int threads)
         std::int64_t sum = 0;
         out[0] = 0;
         for (int i = 0; i < width_; ++i) {
-            sum += std::llrint(weight * luminance(rgb + 3 * i));
+            sum += static_cast<std::int64_t>(weight * litLuminance(rgb + 3 * i) + 0.5);
             out[i + 1] = sum;
         }
     });

@@ -8,11 +8,6 @@
 
 namespace ibl {
 
-/// Luminance weights of the lights (Debevec 2005, ITU-R BT.709 rounded as he gives them).
-constexpr double kLuminanceRed = 0.2125;
-constexpr double kLuminanceGreen = 0.7154;
-constexpr double kLuminanceBlue = 0.0721;
-
 /// A rectangle of lat-long pixels: columns [x, x + width), wrapping at the image's width, and rows
 /// [y, y + height).
 struct PixelRegion {
@@ -21,6 +16,9 @@ struct PixelRegion {
     int width = 0;
     int height = 0;
 };
+
+/// The probe's luminance times solid angle over the sphere, negative luminances as 0.
+double litEnergy(const Image& latlong, int threads);
 
 /// Sums of luminance times solid angle over rectangles (Crow 1984).
 ///

@@ -76,6 +76,134 @@ TEST(Lights, WritesToAFile) {
     EXPECT_EQ(readFile(scratch / "l.d"), "l.json:\n");
 }
 
+TEST(Lights, JsonKeepsToThePublishedSchema) {
+    const Scratch scratch;
+    const auto make = [&](std::vector<std::string> words) {
+        words.insert(words.begin(), "lights");
+        const ToolResult result = runTool(words, scratch.path());
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+    };
+    make({"builtin:sky", "-n", "9", "-o", "cut.json"});
+    make({"builtin:sky", "--previous", "cut.json", "-o", "next.json"});
+    make({"builtin:sky", "--method", "importance", "-n", "5", "-o", "importance.json"});
+    make({"builtin:sky", "--sun", "-o", "sun.json"});
+    Json wrong = Json::parse(readFile(scratch / "cut.json"));
+    wrong["lights"][0].erase("direction");
+    writeFile(scratch / "wrong.json", wrong.dump());
+    const std::string validate = "import json, sys, jsonschema\n"
+                                 "schema = json.load(open(sys.argv[1]))\n"
+                                 "jsonschema.Draft7Validator.check_schema(schema)\n"
+                                 "jsonschema.validate(json.load(open(sys.argv[2])), schema)\n";
+    const std::string schema = std::string(IBLTOOL_SOURCE_DIR) + "/testdata/lights.schema.json";
+    for (const std::string name :
+         {"cut.json", "next.json", "importance.json", "sun.json", "wrong.json"}) {
+        const ToolResult result =
+            runProgram({"python3", "-W", "ignore", "-c", validate, schema, name}, scratch.path());
+        EXPECT_EQ(result.exit_code == 0, name != "wrong.json") << result.err;
+        if (name == "wrong.json") {
+            EXPECT_NE(result.err.find("'direction' is a required"), std::string::npos);
+        }
+    }
+}
+
+TEST(Lights, TheManualNamesTheSchemasMembers) {
+    const std::string root = IBLTOOL_SOURCE_DIR;
+    const Json schema = Json::parse(readFile(root + "/testdata/lights.schema.json"));
+    const std::string page = readFile(root + "/man/ibltool-lights.1");
+    const Json& members = schema["properties"];
+    for (const Json& part :
+         {members, members["change"]["properties"], members["lights"]["items"]["properties"]}) {
+        for (const auto& member : part.items()) {
+            EXPECT_NE(page.find("\\fI" + member.key() + "\\fR"), std::string::npos) << member.key();
+        }
+    }
+}
+
+TEST(Lights, FormatsByExtensionOrByName) {
+    const Scratch scratch;
+    for (const std::string format : {"json", "csv", "gltf", "usda"}) {
+        const std::string name = "l." + format;
+        EXPECT_EQ(runTool({"lights", "builtin:sky", "-n", "3", "-o", name}, scratch.path()).err,
+                  "");
+        const std::string out =
+            runTool({"lights", "builtin:sky", "-n", "3", "--format", format}, scratch.path()).out;
+        EXPECT_EQ(out, readFile(scratch / name));
+        EXPECT_NE(out.find("builtin:sky"), std::string::npos) << out;
+    }
+}
+
+TEST(Lights, MaxErrorIsKeptOrRefused) {
+    const Scratch scratch;
+    const Json lights = lightsOf({"builtin:sky", "--max-error", "0.01"}, scratch);
+    EXPECT_LE(lights.at("irradiance_error").get<double>(), 0.01);
+    ASSERT_GT(lights.at("lights").size(), 8u);
+    const std::string fewer = std::to_string(lights.at("lights").size() - 1);
+    EXPECT_GT(lightsOf({"builtin:sky", "-n", fewer}, scratch)["irradiance_error"].get<double>(),
+              0.01);
+    runTool({"convert", "builtin:sky", "--to", "latlong", "--size", "2", "-o", "s.exr"},
+            scratch.path());
+    expectRefused(runTool({"lights", "s.exr", "--max-error", "1e-6"}, scratch.path()), 5,
+                  "--max-error");
+}
+
+TEST(Lights, SunAndResidualAddUpToTheProbe) {
+    const Scratch scratch;
+    const Json sun = lightsOf({"builtin:sky", "--sun", "--residual", "rest.exr"}, scratch);
+    ASSERT_EQ(sun.at("lights").size(), 1u);
+    const auto energy = [&](const char* probe) {
+        return Json::parse(runTool({"info", "--json", probe}, scratch.path()).out).at("energy");
+    };
+    const Json whole = energy("builtin:sky"), rest = energy("rest.exr");
+    for (int c = 0; c < 3; ++c) {
+        const double total = whole[c];
+        const double light = sun["lights"][0]["irradiance"][c];
+        EXPECT_NEAR(light + rest[c].get<double>(), total, 1e-6 * total);
+        EXPECT_GT(light, 0.1 * total);
+    }
+    for (const char* probe : {"builtin:compass", "builtin:furnace"}) {
+        expectRefused(runTool({"lights", probe, "--sun", "--residual", "no.exr"}, scratch.path()),
+                      2, "no sun or lamp");
+    }
+    EXPECT_FALSE(std::filesystem::exists(scratch / "no.exr"));
+}
+
+TEST(Lights, PreviewIsAPicture) {
+    const Scratch scratch;
+    lightsOf({"builtin:sky", "--preview", "p.png"}, scratch);
+    EXPECT_EQ(readFile(scratch / "p.png").substr(1, 3), "PNG");
+}
+
+TEST(Lights, BlackProbeSaysSo) {
+    const Scratch scratch;
+    runProgram({"oiiotool", "--pattern", "constant:color=0,0,0", "16x8", "3", "-d", "float", "-o",
+                "black.exr"},
+               scratch.path());
+    for (const char* method : {"median", "variance", "importance"}) {
+        const ToolResult result =
+            runTool({"lights", "black.exr", "--method", method}, scratch.path());
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+        EXPECT_NE(result.err.find("no lights"), std::string::npos);
+        EXPECT_TRUE(Json::parse(result.out).at("lights").empty());
+    }
+}
+
+TEST(Lights, EveryLayoutGivesTheSameSun) {
+    const Scratch scratch;
+    const Json expected = lightsOf({"builtin:sky", "--sun"}, scratch)["lights"][0];
+    for (const char* layout : {"faces", "vcross", "hcross", "strip", "vstrip", "exr-cube"}) {
+        runTool({"convert", "builtin:sky", "--to", layout, "--size", "256", "-o", "p.exr"},
+                scratch.path());
+        const Json found = lightsOf({"p.exr", "--from", layout, "--sun"}, scratch)["lights"][0];
+        for (int c = 0; c < 3; ++c) {
+            EXPECT_NEAR(found["direction"][c].get<double>(), expected["direction"][c].get<double>(),
+                        3e-3)
+                << layout;
+        }
+        for (const std::string& name : scratch.names())
+            std::filesystem::remove(scratch / name);
+    }
+}
+
 TEST(Lights, Refusals) {
     const Scratch scratch;
     const auto refused = [&](std::vector<std::string> words, const std::string& said) {
@@ -86,8 +214,28 @@ TEST(Lights, Refusals) {
     refused({"builtin:sky", "-n", "65537"}, "--count");
     refused({"builtin:sky", "-n", "many"}, "--count");
     refused({"builtin:sky", "--method", "best"}, "--method");
+    refused({"builtin:sky", "-n", "4", "--max-error", "0.1"}, "--max-error");
+    refused({"builtin:sky", "--max-error", "0"}, "--max-error");
+    refused({"builtin:sky", "--method", "importance", "--max-error", "0.1"}, "--max-error");
+    refused({"builtin:sky", "--method", "importance", "--place", "centre"}, "--place");
+    refused({"builtin:sky", "--place", "corner"}, "--place");
+    refused({"builtin:sky", "--sun", "-n", "4"}, "--sun");
+    refused({"builtin:sky", "--sun", "--method", "median"}, "--sun");
+    refused({"builtin:sky", "--residual", "r.exr"}, "--sun");
+    refused({"builtin:sky", "--sun", "--residual", "-"}, "--residual");
+    refused({"builtin:sky", "-o", "l.txt"}, "--format");
+    refused({"builtin:sky", "--format", "usd"}, "--format");
+    refused({"builtin:sky", "--preview", "p.jpg"}, ".png");
     refused({}, "IN");
     EXPECT_TRUE(scratch.names().empty());
+    writeFile(scratch / "not.json", "{}");
+    expectRefused(runTool({"lights", "builtin:sky", "--previous", "not.json"}, scratch.path()), 2,
+                  "not.json");
+    writeFile(scratch / "m.json",
+              runTool({"lights", "builtin:sky", "-n", "2"}, scratch.path()).out);
+    expectRefused(runTool({"lights", "builtin:sky", "--previous", "m.json", "--method", "variance"},
+                          scratch.path()),
+                  2, "--method median");
 }
 
 } // namespace

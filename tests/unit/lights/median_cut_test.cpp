@@ -1,56 +1,29 @@
+#include "lights/cut_lights.h"
 #include "lights/lights_json.h"
-#include "lights/median_cut.h"
 
-#include "panorama/conventions.h"
+#include "unit/lights/light_probes.h"
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
-
-#include <random>
 
 namespace ibl {
 namespace {
 
-Image filled(int width, int height, float value) {
-    Image image(width, height, 3);
-    std::fill(image.pixels.begin(), image.pixels.end(), value);
-    return image;
+std::vector<Light> medianLights(const Image& image, int count, int threads = 2) {
+    LightRequest request;
+    request.count = count;
+    return cutLights(image, request, threads).lights;
 }
 
-void setPixel(Image& image, int x, int y, float r, float g, float b) {
-    float* rgb = image.at(x, y);
-    rgb[0] = r;
-    rgb[1] = g;
-    rgb[2] = b;
-}
-
-Image noise(int width, int height, unsigned seed) {
-    Image image(width, height, 3);
-    std::mt19937 random(seed);
-    std::lognormal_distribution<float> value(0.f, 2.f);
-    for (float& v : image.pixels)
-        v = value(random);
-    return image;
-}
-
-/// The probe's integral, summed in long double from solid angles taken as cosine differences.
-std::array<long double, 3> integral(const Image& image) {
-    std::array<long double, 3> sum{};
-    const long double pi = std::numbers::pi_v<long double>;
-    for (int j = 0; j < image.height; ++j) {
-        const long double omega =
-            2 * pi / image.width *
-            (std::cos(pi * j / image.height) - std::cos(pi * (j + 1) / image.height));
-        for (int i = 0; i < image.width; ++i) {
-            for (int c = 0; c < 3; ++c)
-                sum[c] += omega * image.at(i, j)[c];
-        }
-    }
-    return sum;
+std::vector<PixelRegion> medianRegions(const SummedAreaTable& table, int count) {
+    const CutTree tree = medianCut(table, count);
+    std::vector<PixelRegion> regions;
+    for (const int node : leavesOf(tree, tree.cut.size()))
+        regions.push_back(tree.nodes[node]);
+    return regions;
 }
 
 void expectEnergyKept(const Image& image, int count) {
-    const std::vector<Light> lights = medianCut(image, count, 2);
+    const std::vector<Light> lights = medianLights(image, count);
     const V3d total = totalIrradiance(lights);
     const auto expected = integral(image);
     double solid_angle = 0;
@@ -120,25 +93,49 @@ TEST(MedianCut, NegativePixelsCountInTheColours) {
 TEST(MedianCut, GivesTheCountAsked) {
     const Image image = noise(64, 32, 3);
     for (const int count : {1, 2, 5, 16, 33, 512}) {
-        EXPECT_EQ(medianCut(image, count, 2).size(), static_cast<std::size_t>(count));
+        EXPECT_EQ(medianLights(image, count).size(), static_cast<std::size_t>(count));
     }
 }
 
 TEST(MedianCut, UniformProbeGivesRegionsOfEqualSolidAngle) {
     const Image image = filled(512, 256, 0.7f);
-    for (const int count : {2, 4, 16, 64, 256}) {
-        const double wanted = 4 * kPi / count;
-        for (const Light& light : medianCut(image, count, 2)) {
-            // Within a row or a column of the region's own rectangle.
-            EXPECT_NEAR(light.solid_angle, wanted, 0.16 * wanted) << count;
+    for (const int count : {2, 4, 16, 64, 256, 1024}) {
+        for (const Light& light : medianLights(image, count)) {
+            // Within one row and one column of the region's own pixels.
+            const double width =
+                (light.region->longitude[1] - light.region->longitude[0]) / 360 * 512;
+            const double height =
+                (light.region->latitude[1] - light.region->latitude[0]) / 180 * 256;
+            const double pixel = light.solid_angle / std::lround(width) / std::lround(height);
+            EXPECT_NEAR(light.solid_angle, 4 * kPi / count, (width + height) * pixel) << count;
         }
     }
+}
+
+TEST(MedianCut, FewerCutsAreAPrefixOfMore) {
+    const SummedAreaTable table(noise(64, 32, 21), 2);
+    const CutTree few = medianCut(table, 37), many = medianCut(table, 200);
+    ASSERT_LT(few.cut.size(), many.cut.size());
+    EXPECT_TRUE(std::equal(few.cut.begin(), few.cut.end(), many.cut.begin()));
+}
+
+TEST(MedianCut, BetweenPowersOfTwoTheHeaviestAreCut) {
+    const SummedAreaTable table(noise(64, 32, 22), 2);
+    std::vector<std::int64_t> four, six;
+    for (const PixelRegion& r : medianRegions(table, 4))
+        four.push_back(table.energy(r));
+    for (const PixelRegion& r : medianRegions(table, 6))
+        six.push_back(table.energy(r));
+    std::sort(four.rbegin(), four.rend());
+    // The two lightest of four are there still, the two heaviest are not.
+    for (int i = 0; i < 4; ++i)
+        EXPECT_EQ(std::count(six.begin(), six.end(), four[i]), i < 2 ? 0 : 1) << i;
 }
 
 TEST(MedianCut, CutsAreAsEvenAsPixelsAllow) {
     const Image image = noise(256, 128, 4);
     const SummedAreaTable table(image, 1);
-    const auto regions = medianCutRegions(table, 16);
+    const auto regions = medianRegions(table, 16);
     const double share = static_cast<double>(table.energy({0, 0, 256, 128})) / 16;
     for (const PixelRegion& r : regions) {
         EXPECT_NEAR(static_cast<double>(table.energy(r)), share, 0.2 * share);
@@ -149,7 +146,7 @@ TEST(MedianCut, OneLampIsFoundAtItsPixelsCentroid) {
     for (const auto& [x, y] : {std::pair{100, 40}, {0, 40}, {255, 127}, {7, 0}}) {
         Image image = filled(256, 128, 0.f);
         setPixel(image, x, y, 10.f, 20.f, 30.f);
-        const std::vector<Light> lights = medianCut(image, 16, 2);
+        const std::vector<Light> lights = medianLights(image, 16);
         ASSERT_EQ(lights.size(), 1u);
         const V3d expected = latlongDirection((x + 0.5) / 256, (y + 0.5) / 128);
         EXPECT_GT(lights[0].direction.dot(expected), 1 - 1e-5);
@@ -164,49 +161,36 @@ TEST(MedianCut, ASunAcrossTheSeamStaysWhole) {
     for (const int x : {62, 63, 0, 1})
         setPixel(image, x, 16, 1000.f, 1000.f, 1000.f);
     // One light: its centroid is the sun's middle, on the -Z side, not the image's middle.
-    const std::vector<Light> lights = medianCut(image, 1, 1);
+    const std::vector<Light> lights = medianLights(image, 1, 1);
     ASSERT_EQ(lights.size(), 1u);
     EXPECT_LT(lights[0].direction.z, -0.99);
     // And the circle is opened elsewhere than through the sun.
-    const auto regions = medianCutRegions(SummedAreaTable(image, 1), 1);
+    const auto regions = medianRegions(SummedAreaTable(image, 1), 1);
     EXPECT_EQ(regions[0].x, 2);
 }
 
 TEST(MedianCut, BlackProbeHasNoLights) {
-    EXPECT_TRUE(medianCut(filled(64, 32, 0.f), 16, 2).empty());
+    EXPECT_TRUE(medianLights(filled(64, 32, 0.f), 16).empty());
 }
 
 TEST(MedianCut, SameLightsForAnyThreadCount) {
     const Image image = noise(301, 150, 5);
-    EXPECT_EQ(lightsJson(medianCut(image, 77, 1), "x", "median"),
-              lightsJson(medianCut(image, 77, 5), "x", "median"));
+    LightSet one, five;
+    one.lights = medianLights(image, 77, 1);
+    five.lights = medianLights(image, 77, 5);
+    EXPECT_EQ(lightsJson(one), lightsJson(five));
 }
 
 TEST(MedianCut, DirectionsLieInTheirRegions) {
-    for (const Light& light : medianCut(noise(256, 128, 6), 256, 2)) {
+    for (const Light& light : medianLights(noise(256, 128, 6), 256)) {
         const double latitude = std::asin(light.direction.y) * 180 / kPi;
         double longitude = std::atan2(light.direction.x, light.direction.z) * 180 / kPi;
-        if (longitude < light.longitude[0]) longitude += 360;
-        EXPECT_GE(longitude, light.longitude[0] - 1e-9);
-        EXPECT_LE(longitude, light.longitude[1] + 1e-9);
+        if (longitude < light.region->longitude[0]) longitude += 360;
+        EXPECT_GE(longitude, light.region->longitude[0] - 1e-9);
+        EXPECT_LE(longitude, light.region->longitude[1] + 1e-9);
         // The centroid of a wide region bulges towards the nearer pole, by less than 20 degrees.
-        EXPECT_GE(latitude, light.latitude[0] - 20);
-        EXPECT_LE(latitude, light.latitude[1] + 20);
-    }
-}
-
-TEST(LightsJson, NamesUnitsAndReadsBack) {
-    const std::vector<Light> lights = medianCut(noise(32, 16, 11), 5, 1);
-    const auto json = nlohmann::json::parse(lightsJson(lights, "a \"quoted\"\xff name", "median"));
-    EXPECT_TRUE(json.at("axes").is_string());
-    EXPECT_EQ(json.at("units").at("solid_angle"), "steradian");
-    ASSERT_EQ(json.at("lights").size(), 5u);
-    for (std::size_t i = 0; i < 5; ++i) {
-        const auto& light = json["lights"][i];
-        EXPECT_EQ(light.at("direction")[1].get<double>(), lights[i].direction.y);
-        EXPECT_EQ(light.at("irradiance")[2].get<double>(), lights[i].irradiance.z);
-        EXPECT_EQ(light.at("solid_angle").get<double>(), lights[i].solid_angle);
-        EXPECT_EQ(light.at("region").at("longitude")[0].get<double>(), lights[i].longitude[0]);
+        EXPECT_GE(latitude, light.region->latitude[0] - 20);
+        EXPECT_LE(latitude, light.region->latitude[1] + 20);
     }
 }
 

@@ -1,0 +1,166 @@
+#include "lights/cut_lights.h"
+#include "lights/cutting.h"
+#include "lights/moment_table.h"
+
+#include "unit/lights/light_probes.h"
+
+#include <gtest/gtest.h>
+
+namespace ibl {
+namespace {
+
+LightSet lightsOfProbe(const Image& image, LightMethod method, int count, int threads = 2) {
+    LightRequest request;
+    request.method = method;
+    request.count = count;
+    return cutLights(image, request, threads);
+}
+
+/// sum of luminance times squared distance from the centroid, pixels divided into 8 x 8 points.
+double bruteVariance(const Image& image, const PixelRegion& r) {
+    constexpr int kPoints = 8;
+    std::vector<std::pair<V3d, double>> points;
+    V3d mean(0);
+    double total = 0;
+    for (int j = r.y; j < r.y + r.height; ++j) {
+        for (int k = r.x; k < r.x + r.width; ++k) {
+            const float* rgb = image.at(k % image.width, j);
+            const double y = 0.2125 * rgb[0] + 0.7154 * rgb[1] + 0.0721 * rgb[2];
+            for (int p = 0; p < kPoints * kPoints; ++p) {
+                const double v = (j + (p / kPoints + 0.5) / kPoints) / image.height;
+                const double u = (k + (p % kPoints + 0.5) / kPoints) / image.width;
+                const V3d d = latlongDirection(u, v);
+                const double w = y * std::sin(kPi * v);
+                points.emplace_back(d, w);
+                mean += d * w;
+                total += w;
+            }
+        }
+    }
+    mean /= total;
+    double sum = 0;
+    for (const auto& [d, w] : points)
+        sum += w * (d - mean).length2();
+    return sum / total;
+}
+
+TEST(MomentTable, VarianceIsThatOfThePoints) {
+    const Image image = noise(37, 19, 41);
+    const MomentTable table(image, 2);
+    for (const PixelRegion r : {PixelRegion{0, 0, 37, 19}, PixelRegion{5, 3, 7, 9},
+                                PixelRegion{30, 0, 20, 4}, PixelRegion{36, 18, 1, 1}}) {
+        const double expected = bruteVariance(image, r);
+        EXPECT_NEAR(table.variance(r) / static_cast<double>(table.energy(r)), expected,
+                    0.01 * expected);
+    }
+}
+
+TEST(MomentTable, ADimRegionBesideASunIsNotLost) {
+    Image image = filled(128, 64, 1e-3f);
+    setPixel(image, 10, 5, 1e9f, 1e9f, 1e9f);
+    const MomentTable table(image, 2);
+    const PixelRegion dim{100, 30, 8, 6};
+    const double expected = bruteVariance(image, dim);
+    EXPECT_NEAR(table.variance(dim) / static_cast<double>(table.energy(dim)), expected,
+                0.02 * expected);
+}
+
+TEST(VarianceCut, EachCutMakesTheLargerVarianceLeast) {
+    const MomentTable table(noise(24, 12, 42), 1);
+    const CutTree tree = varianceCut(table, 20);
+    for (std::size_t k = 0; k < tree.cut.size(); ++k) {
+        const PixelRegion& whole = tree.nodes[static_cast<std::size_t>(tree.cut[k])];
+        const double larger =
+            std::max(table.variance(tree.nodes[2 * k + 1]), table.variance(tree.nodes[2 * k + 2]));
+        for (const bool longitude : {false, true}) {
+            for (int first = 1; first < (longitude ? whole.width : whole.height); ++first) {
+                const auto [a, b] = cutAt(table.width(), whole, longitude, first);
+                EXPECT_LE(larger, std::max(table.variance(a), table.variance(b)) * (1 + 1e-9));
+            }
+        }
+    }
+}
+
+/// A sky of 1 with a sun of 3 x 3 pixels, about as bright as all of it.
+Image sunProbe() {
+    Image image = filled(256, 128, 1.f);
+    for (int y = 40; y < 43; ++y) {
+        for (int x = 50; x < 53; ++x)
+            setPixel(image, x, y, 2000.f, 1900.f, 1800.f);
+    }
+    return image;
+}
+
+TEST(VarianceCut, DoesNotCutThroughASun) {
+    double sun = 0;
+    for (int y = 40; y < 43; ++y)
+        sun += 3 * 2000 * latlongPixelSolidAngle(256, 128, y);
+    const Image image = sunProbe();
+    EXPECT_GT(lightsOfProbe(image, LightMethod::variance, 16).lights[0].irradiance.x, 0.98 * sun);
+    EXPECT_LT(lightsOfProbe(image, LightMethod::median, 16).lights[0].irradiance.x, 0.6 * sun);
+}
+
+TEST(VarianceCut, IsBetterThanTheMedianWhereASourceDominates) {
+    const Image image = sunProbe();
+    for (const int count : {4, 64, 256}) { // at 16 an even sky suits the median
+        EXPECT_LT(lightsOfProbe(image, LightMethod::variance, count).irradiance_error,
+                  0.8 * lightsOfProbe(image, LightMethod::median, count).irradiance_error)
+            << count;
+    }
+}
+
+TEST(AllMethods, KeepEnergyAndGiveTheCountAsked) {
+    Image image = noise(64, 32, 44);
+    setPixel(image, 3, 3, 1e9f, 1e8f, 1e7f);
+    setPixel(image, 20, 16, -100.f, 5.f, -10.f);
+    const auto expected = integral(image);
+    for (const LightMethod method :
+         {LightMethod::median, LightMethod::variance, LightMethod::importance}) {
+        for (const int count : {1, 2, 7, 64, 500}) {
+            const std::vector<Light> lights = lightsOfProbe(image, method, count).lights;
+            EXPECT_EQ(lights.size(), static_cast<std::size_t>(count));
+            const V3d total = totalIrradiance(lights);
+            for (int c = 0; c < 3; ++c) {
+                const double exact = static_cast<double>(expected[static_cast<std::size_t>(c)]);
+                EXPECT_NEAR(total[c], exact, 1e-9 * std::abs(exact)) << methodName(method);
+            }
+        }
+    }
+}
+
+TEST(AllMethods, OnePixelAndMoreLightsThanPixels) {
+    for (const LightMethod method : {LightMethod::median, LightMethod::variance}) {
+        EXPECT_EQ(lightsOfProbe(filled(1, 1, 2.f), method, 8).lights.size(), 1u);
+        EXPECT_EQ(lightsOfProbe(filled(3, 2, 2.f), method, 65536).lights.size(), 6u);
+    }
+    EXPECT_EQ(lightsOfProbe(filled(1, 1, 2.f), LightMethod::importance, 65536).lights.size(),
+              65536u);
+}
+
+TEST(AllMethods, BlackAndNegativeProbesHaveNone) {
+    for (const LightMethod method :
+         {LightMethod::median, LightMethod::variance, LightMethod::importance}) {
+        for (const float value : {0.f, -1.f})
+            EXPECT_TRUE(lightsOfProbe(filled(16, 8, value), method, 8).lights.empty());
+    }
+}
+
+TEST(Importance, AnyPrefixOfTheSphereGetsItsShareOfLights) {
+    const Image image = noise(64, 32, 45);
+    const std::vector<Light> lights = lightsOfProbe(image, LightMethod::importance, 4096).lights;
+    const SummedAreaTable table(image, 1);
+    const double total = static_cast<double>(table.energy({0, 0, 64, 32}));
+    for (const PixelRegion r :
+         {PixelRegion{0, 0, 32, 32}, PixelRegion{0, 0, 64, 9}, PixelRegion{10, 5, 30, 20}}) {
+        const auto inside = std::count_if(lights.begin(), lights.end(), [&](const Light& light) {
+            const V2d at = latlongPoint(light.direction);
+            return at.x * 64 >= r.x && at.x * 64 < r.x + r.width && at.y * 32 >= r.y &&
+                   at.y * 32 < r.y + r.height;
+        });
+        EXPECT_NEAR(static_cast<double>(inside) / 4096,
+                    static_cast<double>(table.energy(r)) / total, 0.01);
+    }
+}
+
+} // namespace
+} // namespace ibl
