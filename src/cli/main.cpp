@@ -36,7 +36,8 @@ void runCommandLine(int argc, char** argv) {
     root.footer(kFooter);
     const std::vector<Command> commands = {
         bindConvert(root), bindDiffuse(root), bindSpecular(root), bindBrdf(root),
-        bindLights(root),  bindRender(root),  bindBake(root),     bindInfo(root),
+        bindLights(root),  bindRender(root),  bindTonemap(root),  bindBake(root),
+        bindInfo(root),
     };
     try {
         root.parse(argc, argv);

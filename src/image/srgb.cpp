@@ -46,9 +46,8 @@ float srgbToLinear(float encoded) {
     return static_cast<float>(decode(encoded));
 }
 
-float linearToSrgb(float linear) {
-    const double v = linear;
-    return static_cast<float>(v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055);
+double linearToSrgb(double linear) {
+    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
 }
 
 std::uint8_t linearToSrgb8(float linear) {
