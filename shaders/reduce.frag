@@ -6,32 +6,41 @@ uniform ivec2 m;
 uniform ivec2 fine_origin; // of the texture that holds a part of it
 out vec4 color;
 
-// Where the tent of pixel i begins, and the place of that fine pixel's left edge from the tent's middle.
-int tentFrom(int i, int fine_edge, int made_edge, out float place) {
-    int first = floorDivide((2 * i - 1) * fine_edge, 2 * made_edge);
+#if SOURCE_IS_FRAME
+const int reach = 0; // of the kernel, beyond the pixel's own width, in halves of it
+#define INTEGRAL boxIntegral
+#else
+const int reach = 1;
+#define INTEGRAL tentIntegral
+#endif
+
+// The first fine pixel that pixel i reads, and the place of its left edge from the kernel's middle.
+int readFrom(int i, int fine_edge, int made_edge, out float place) {
+    int first = floorDivide((2 * i - reach) * fine_edge, 2 * made_edge);
     place = float(2 * (first * made_edge - i * fine_edge) - fine_edge) / float(2 * fine_edge);
     return first;
 }
 
-// As many fine pixels as a tent touches: four when halving exactly, where it begins at an edge.
+// As many as a kernel touches; when halving exactly it begins and ends at edges.
 int tapsOf(int fine_edge, int made_edge) {
-    return fine_edge == 2 * made_edge ? 4 : int(ceil(2.0 * float(fine_edge) / float(made_edge))) + 1;
+    float width = float((1 + reach) * fine_edge) / float(made_edge);
+    return fine_edge == 2 * made_edge ? 2 + 2 * reach : int(ceil(width)) + 1;
 }
 
 void main() {
     ivec2 at = ivec2(gl_FragCoord.xy);
     vec2 place, step = vec2(m) / vec2(n);
-    ivec2 first = ivec2(tentFrom(at.x, n.x, m.x, place.x), tentFrom(at.y, n.y, m.y, place.y));
+    ivec2 first = ivec2(readFrom(at.x, n.x, m.x, place.x), readFrom(at.y, n.y, m.y, place.y));
     ivec2 taps = ivec2(tapsOf(n.x, m.x), tapsOf(n.y, m.y));
     vec3 sum = vec3(0.0);
-    float above = tentIntegral(place.y);
+    float above = INTEGRAL(place.y);
     for (int k = 0; k < taps.y; ++k) {
-        float below = tentIntegral(place.y + float(k + 1) * step.y);
+        float below = INTEGRAL(place.y + float(k + 1) * step.y);
         int y = mirrored(first.y + k, n.y) - fine_origin.y;
         vec3 row = vec3(0.0);
-        float before = tentIntegral(place.x);
+        float before = INTEGRAL(place.x);
         for (int j = 0; j < taps.x; ++j) {
-            float after = tentIntegral(place.x + float(j + 1) * step.x);
+            float after = INTEGRAL(place.x + float(j + 1) * step.x);
             vec3 c = texelFetch(fine, ivec2(mirrored(first.x + j, n.x) - fine_origin.x, y), 0).rgb;
 #if SOURCE_IS_FRAME
             c = brightPart(exposed(c));

@@ -153,9 +153,9 @@ void runRender(const RenderOptions& options) {
     FrameOptions frame = options.frame;
     if (!options.shader_folder.empty()) frame.shader_folder = options.shader_folder;
     Renderer renderer = session.stage("upload", [&] { return Renderer(context, scene, frame); });
-    const Image picture = session.stage("draw", [&] { return renderer.render(cameraOf(options)); });
-    showPicture(session, context, options.display, picture, options.output, how,
-                frame.shader_folder);
+    Image picture = session.stage("draw", [&] { return renderer.render(cameraOf(options)); });
+    showPicture(session, context, options.display, std::move(picture), std::nullopt, options.output,
+                how, frame.shader_folder);
     session.finish();
 }
 

@@ -54,22 +54,28 @@ void mendPicture(Session& session, const std::string& subject, Image& picture) {
     exchange(true);
 }
 
-void screenPicture(Session& session, const TonemapOptions& options, Image& picture) {
-    if (options.repair) {
+/// Mends or refuses what is not finite; returns the log-average.
+double screenPicture(Session& session, const TonemapOptions& options, Image& picture) {
+    const auto census = [&] {
+        return session.stage("screen", [&] {
+            return takePictureCensus(picture, deltaOf(options.display), session.threads());
+        });
+    };
+    PictureCensus found = census();
+    if (options.repair && found.nan + found.infinite + found.negative > 0) {
         mendPicture(session, options.input, picture);
-        return;
+        found = census();
     }
-    const PictureCensus census =
-        session.stage("screen", [&] { return takePictureCensus(picture, 1, session.threads()); });
-    if (census.nan + census.infinite > 0) {
-        throw inputError(options.input, std::to_string(census.nan) + " NaN and " +
-                                            std::to_string(census.infinite) +
+    if (found.nan + found.infinite > 0) {
+        throw inputError(options.input, std::to_string(found.nan) + " NaN and " +
+                                            std::to_string(found.infinite) +
                                             " infinite pixels; --repair mends them");
     }
-    if (census.negative > 0) {
-        session.note(options.input, std::to_string(census.negative) +
+    if (found.negative > 0) {
+        session.note(options.input, std::to_string(found.negative) +
                                         " negative pixels kept; --repair sets them to 0");
     }
+    return found.log_average;
 }
 
 void runTonemap(const TonemapOptions& options) {
@@ -77,11 +83,12 @@ void runTonemap(const TonemapOptions& options) {
     const WriteOptions how = writeOptions(options.output, options.common);
     requireFitting(options.display, options.output);
     Image picture = readPicture(session, options);
-    screenPicture(session, options, picture);
+    const double log_average = screenPicture(session, options, picture);
     const EglContext context = session.stage("context", [] { return EglContext(); });
     session.detail("device: " + context.description());
     session.results()["device"] = context.description();
-    showPicture(session, context, options.display, picture, options.output, how);
+    showPicture(session, context, options.display, std::move(picture), log_average, options.output,
+                how);
     session.finish();
 }
 

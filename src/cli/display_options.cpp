@@ -13,7 +13,7 @@
 namespace ibl {
 namespace {
 
-constexpr double kStandardKey = 0.18;  // middle grey
+constexpr double kStandardKey = 0.18; // middle grey
 constexpr double kStandardDelta = 1e-5;
 
 bool isPng(const ImageOutputOptions& output) {
@@ -74,7 +74,8 @@ void bindToneMap(CLI::App& app, DisplayArguments& a) {
     std::string help;
     for (const ToneMapInfo& info : toneMapTable()) {
         names.emplace_back(info.name);
-        help += (help.empty() ? "" : "; ") + std::string(info.name) + ": " + std::string(info.summary);
+        help +=
+            (help.empty() ? "" : "; ") + std::string(info.name) + ": " + std::string(info.summary);
     }
     app.add_option_function<std::string>(
            "--tonemap", [&a](const std::string& n) { a.chain.tone_map = *toneMapFromName(n); },
@@ -175,6 +176,10 @@ void bindDisplay(CLI::App& app, DisplayArguments& arguments) {
         ->group("Output");
 }
 
+double deltaOf(const DisplayArguments& arguments) {
+    return arguments.delta.value_or(kStandardDelta);
+}
+
 void requireFitting(const DisplayArguments& a, const ImageOutputOptions& output) {
     const auto refuse = [](bool idle, const std::string& option, const std::string& why) {
         if (idle) throw Error(ExitCode::usage, option + " " + why + "; leave it out");
@@ -201,7 +206,8 @@ void requireFitting(const DisplayArguments& a, const ImageOutputOptions& output)
     const bool png = isPng(output);
     refuse((a.bits || a.dither) && !png, "--bits or --dither", "is of PNG files");
     if (info.map == ToneMap::display && !png) {
-        throw Error(ExitCode::usage, "--tonemap display: makes display-encoded values; write a PNG");
+        throw Error(ExitCode::usage,
+                    "--tonemap display: makes display-encoded values; write a PNG");
     }
 }
 
@@ -221,11 +227,11 @@ std::optional<double> readAdaptation(const std::string& path) {
 }
 
 /// Stops that the picture is exposed by. Notes in the report how they came about.
-double exposureOf(Session& session, const DisplayArguments& a, const Image& picture) {
+double exposureOf(Session& session, const DisplayArguments& a, const Image& picture,
+                  std::optional<double> known) {
     if (!a.auto_exposure) return a.exposure;
-    double average = session.stage("expose", [&] {
-        return takePictureCensus(picture, a.delta.value_or(kStandardDelta), session.threads())
-            .log_average;
+    double average = known ? *known : session.stage("expose", [&] {
+        return takePictureCensus(picture, deltaOf(a), session.threads()).log_average;
     });
     session.results()["log_average"] = average;
     if (!a.adapt_state.empty()) {
@@ -255,9 +261,9 @@ DisplayOptions chainOf(const DisplayArguments& a) {
 } // namespace
 
 void showPicture(Session& session, const EglContext& context, const DisplayArguments& arguments,
-                 const Image& picture, const ImageOutputOptions& output, const WriteOptions& how,
-                 std::optional<std::filesystem::path> shader_folder) {
-    const double exposure = exposureOf(session, arguments, picture);
+                 Image picture, std::optional<double> log_average, const ImageOutputOptions& output,
+                 const WriteOptions& how, std::optional<std::filesystem::path> shader_folder) {
+    const double exposure = exposureOf(session, arguments, picture, log_average);
     session.results()["exposure"] = exposure;
     DisplayOptions options = chainOf(arguments);
     if (options.tone_map == ToneMap::display) {
@@ -265,18 +271,18 @@ void showPicture(Session& session, const EglContext& context, const DisplayArgum
         options.transform =
             session.stage("ocio", [&] { return loadDisplayTransform(arguments.view); });
     }
-    const Image shown = session.stage("display", [&] {
+    session.stage("display", [&] {
         DisplayChain chain(context, options, std::move(shader_folder));
-        return chain.apply(picture, exposure, session.threads());
+        chain.apply(picture, exposure, session.threads());
     });
     session.stage("write", [&] {
         if (!isPng(output)) {
-            session.write(output.output, shown, how);
+            session.write(output.output, picture, how);
             return;
         }
         const PngOptions png{arguments.bits.value_or(8), arguments.dither,
                              options.tone_map == ToneMap::display};
-        writePng(session.outputs().add(output.output), shown, png, session.threads());
+        writePng(session.outputs().add(output.output), picture, png, session.threads());
         session.addOutput(output.output);
     });
 }

@@ -34,10 +34,14 @@ void bindDisplay(CLI::App& app, DisplayArguments& arguments);
 /// Refuses what has no effect or does not fit together, before any work is done.
 void requireFitting(const DisplayArguments& arguments, const ImageOutputOptions& output);
 
+/// The delta of the log-average.
+double deltaOf(const DisplayArguments& arguments);
+
 /// Sends a scene-linear picture through the chain and adds it to the outputs, and the state of
-/// adaptation, if one is kept.
+/// adaptation, if one is kept. `log_average` is that of the picture, where it is known already.
 void showPicture(Session& session, const EglContext& context, const DisplayArguments& arguments,
-                 const Image& picture, const ImageOutputOptions& output, const WriteOptions& how,
+                 Image picture, std::optional<double> log_average, const ImageOutputOptions& output,
+                 const WriteOptions& how,
                  std::optional<std::filesystem::path> shader_folder = std::nullopt);
 
 } // namespace ibl

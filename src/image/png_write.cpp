@@ -137,10 +137,28 @@ std::uint32_t codeOf(float value, const PngOptions& options, double threshold) {
     return static_cast<std::uint32_t>(encoded * ((1 << options.bits) - 1) + threshold);
 }
 
+void count(WriteLosses& losses, float value) {
+    losses.above += value > 1;
+    losses.below += value < 0;
+    losses.not_number += std::isnan(value);
+}
+
+/// One row of straight colours of 8 bits without a pattern, which needs no powers.
+WriteLosses encodeRowByTable(const float* row, std::size_t values, std::uint8_t* out) {
+    linearToSrgb8(row, values, out);
+    WriteLosses losses;
+    for (std::size_t i = 0; i < values; ++i)
+        count(losses, row[i]);
+    return losses;
+}
+
 /// One row of floats to bytes. Values outside [0, 1] are counted.
 WriteLosses encodeRow(const Image& image, int y, const PngOptions& options, std::uint8_t* out) {
+    const bool plain = options.bits == 8 && !options.dither && !options.encoded;
+    if (plain && image.channels == 3) {
+        return encodeRowByTable(image.row(y), image.rowFloats(), out);
+    }
     WriteLosses losses;
-    const bool by_table = options.bits == 8 && !options.dither && !options.encoded;
     const auto put = [&](std::uint32_t code) {
         if (options.bits == 16) *out++ = static_cast<std::uint8_t>(code >> 8);
         *out++ = static_cast<std::uint8_t>(code);
@@ -155,10 +173,8 @@ WriteLosses encodeRow(const Image& image, int y, const PngOptions& options, std:
         for (int c = 0; c < 3; ++c) {
             const float v = p[c] * unpremultiply;
             const double threshold = options.dither ? ditherThreshold(x, y) : 0.5;
-            put(by_table ? linearToSrgb8(v) : codeOf(v, options, threshold));
-            losses.above += v > 1;
-            losses.below += v < 0;
-            losses.not_number += std::isnan(v);
+            put(plain ? linearToSrgb8(v) : codeOf(v, options, threshold));
+            count(losses, v);
         }
         if (image.channels == 4) {
             put(static_cast<std::uint32_t>(alpha * static_cast<float>((1 << options.bits) - 1) +
@@ -170,8 +186,7 @@ WriteLosses encodeRow(const Image& image, int y, const PngOptions& options, std:
 
 } // namespace
 
-WriteLosses writePng(OutputFile& file, const Image& image, const PngOptions& options,
-                     int threads) {
+WriteLosses writePng(OutputFile& file, const Image& image, const PngOptions& options, int threads) {
     if (image.width < 1 || image.height < 1 || (image.channels != 3 && image.channels != 4) ||
         (options.bits != 8 && options.bits != 16)) {
         throw std::logic_error("writePng takes RGB or RGBA pixels and 8 or 16 bits");

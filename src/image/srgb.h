@@ -1,6 +1,7 @@
 // The sRGB transfer function (IEC 61966-2-1), both ways.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 namespace ibl {
@@ -11,5 +12,7 @@ float srgbToLinear(float encoded);
 double linearToSrgb(double linear);
 /// linearToSrgb in 255ths, rounded to nearest; below 0 and NaN give 0, above 1 gives 255.
 std::uint8_t linearToSrgb8(float linear);
+/// The same for `count` values.
+void linearToSrgb8(const float* linear, std::size_t count, std::uint8_t* codes);
 
 } // namespace ibl

@@ -9,6 +9,10 @@
 namespace ibl {
 namespace {
 
+V2i halfOf(const V2i& size) {
+    return {(size.x + 1) / 2, (size.y + 1) / 2};
+}
+
 void reduce(Passes& passes, const Program& program, const Texture& fine, const V2i& fine_size,
             const V2i& fine_origin, const Target& to, const PixelRect& part) {
     setUniform(program, "n", fine_size);
@@ -19,7 +23,7 @@ void reduce(Passes& passes, const Program& program, const Texture& fine, const V
 }
 
 Target halved(Passes& passes, const Target& fine) {
-    Target made = makeTarget({(fine.size.x + 1) / 2, (fine.size.y + 1) / 2}, GL_RGBA32F);
+    Target made = makeTarget(halfOf(fine.size), GL_RGBA32F);
     const Program& program = passes.program({"resize.glsl", "reduce.frag"}, {"SOURCE_IS_FRAME 0"});
     reduce(passes, program, fine.texture, fine.size, {0, 0}, made, {{0, 0}, made.size});
     return made;
@@ -43,24 +47,43 @@ void enlarge(Passes& passes, const Target& coarse, double coarse_weight, const T
     adding ? passes.add(program, to) : passes.draw(program, to);
 }
 
-Target gauss(Passes& passes, const Target& picture, double deviation) {
+Target gauss(Passes& passes, const Target& picture, const V2d& deviation) {
     const Program& program = passes.program({"resize.glsl", "gauss.frag"});
-    setUniform(program, "deviation", deviation);
+    setUniform(program, "deviation", deviation.x);
     Target across = makeTarget(picture.size, GL_RGBA32F);
     setUniform(program, "axis", V2i(1, 0));
     glBindTextureUnit(0, picture.texture.id());
     passes.draw(program, across);
     Target made = makeTarget(picture.size, GL_RGBA32F);
+    setUniform(program, "deviation", deviation.y);
     setUniform(program, "axis", V2i(0, 1));
     glBindTextureUnit(0, across.texture.id());
     passes.draw(program, made);
     return made;
 }
 
+// How far a pyramid has come, along each axis: the size of a pixel and the variance of the way down
+// and back up, both in the picture's pixels. By a ratio r, a tent has the variance r^2 / 6 + 1/12
+// each way, the 1/12 for the pixels that it is integrated over; a box r^2 / 12 - 1/12.
+struct Progress {
+    V2d cell{1, 1};
+    V2d variance{0, 0};
+
+    Progress then(const V2i& fine, const V2i& made, bool by_box) const {
+        const V2d ratio(static_cast<double>(fine.x) / made.x, static_cast<double>(fine.y) / made.y);
+        const V2d tent = ratio * ratio / 6 + V2d(1.0 / 12), box = (ratio * ratio - V2d(1)) / 12;
+        return {cell * ratio, variance + cell * cell * (tent + (by_box ? box : tent))};
+    }
+    /// What remains to be blurred by, in pixels of the level, squared.
+    V2d rest(double deviation) const {
+        return (V2d(deviation * deviation) - variance) / (cell * cell);
+    }
+};
+
 } // namespace
 
 double levelOfDeviation(double deviation) {
-    return std::max(1.0, 0.5 * std::log2(2 * deviation * deviation + 1));
+    return std::max(1.0, 0.5 * std::log2(2 * deviation * deviation + 2));
 }
 
 Target reduceFrame(Passes& passes, FrameTiles& tiles, double exposure,
@@ -68,8 +91,8 @@ Target reduceFrame(Passes& passes, FrameTiles& tiles, double exposure,
     const V2i frame = tiles.frameSize();
     const int limit = getInteger(GL_MAX_TEXTURE_SIZE);
     const V2i size{std::min((frame.x + 1) / 2, limit), std::min((frame.y + 1) / 2, limit)};
-    const Program& program = passes.program({"exposure.glsl", "resize.glsl", "reduce.frag"},
-                                            {"SOURCE_IS_FRAME 1"});
+    const Program& program =
+        passes.program({"exposure.glsl", "resize.glsl", "reduce.frag"}, {"SOURCE_IS_FRAME 1"});
     setUniform(program, "exposure", exposure);
     setUniform(program, "threshold", threshold.value_or(0));
     Target made = makeTarget(size, GL_RGBA32F);
@@ -97,7 +120,9 @@ void addLevels(Passes& passes, const Target& base, std::span<const double> weigh
     for (std::size_t l = 1; l < weights.size(); ++l) {
         levels.push_back(halved(passes, l == 1 ? base : levels.back()));
     }
-    const auto level = [&](std::size_t l) -> const Target& { return l == 0 ? base : levels[l - 1]; };
+    const auto level = [&](std::size_t l) -> const Target& {
+        return l == 0 ? base : levels[l - 1];
+    };
     if (weights.size() == 1) {
         enlarge(passes, base, weights[0], nullptr, 0, sum, true);
         return;
@@ -112,19 +137,22 @@ void addLevels(Passes& passes, const Target& base, std::span<const double> weigh
     }
 }
 
-Target blurred(Passes& passes, const Target& base, double deviation) {
-    // Reduced until at least two pixels of the level remain to be blurred by:
-    // deviation^2 = (4^l - 1) / 2 + 4^l rest^2.
+Target blurred(Passes& passes, const Target& base, const V2i& frame, double deviation) {
+    Progress progress = Progress().then(frame, base.size, true);
     const Target* picture = &base;
     Target level;
-    double variance = deviation * deviation, cell = 1;
-    while (variance >= 4 * cell * (0.5 + 4) - 0.5 && std::max(picture->size.x, picture->size.y) > 1) {
+    while (std::max(picture->size.x, picture->size.y) > 1) {
+        const V2i next = halfOf(picture->size);
+        const Progress further = progress.then(picture->size, next, false);
+        const V2d rest = further.rest(deviation);
+        if (std::min(rest.x, rest.y) < 4) break; // a Gaussian needs some pixels to be one
         level = halved(passes, *picture);
         picture = &level;
-        cell *= 4;
+        progress = further;
     }
-    const double rest = std::sqrt(std::max(0.0, (variance - 0.5 * (cell - 1)) / cell));
-    return gauss(passes, *picture, std::max(rest, 1e-3));
+    const V2d rest = progress.rest(deviation);
+    const auto root = [](double square) { return std::sqrt(std::max(square, 1e-6)); };
+    return gauss(passes, *picture, {root(rest.x), root(rest.y)});
 }
 
 } // namespace ibl

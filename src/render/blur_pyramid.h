@@ -1,10 +1,10 @@
 // Blurs of a picture by pyramids. Internal to the render layer.
 //
-// Levels halve the size, rounded up; reducing and enlarging are each other's transpose (the formulas
-// stand in shaders/resize.glsl), so that blurs keep flat pictures flat and lose no energy. A level l
-// enlarged again is the picture blurred by very nearly a Gaussian: the weights 1 3 3 1 / 8 have the
-// variance 3/4, in pixels of the level they are taken from, both ways, so that its variance is
-// 2 * 3/4 (1 + 4 + ... + 4^(l-1)) = (4^l - 1) / 2.
+// Levels halve the size, rounded up; the formulas stand in shaders/resize.glsl. Blurs keep flat
+// pictures flat and lose no energy. A level l enlarged again is the picture blurred by very nearly
+// a Gaussian. The first reduction averages 2x2 pixels, of variance 1/4, the others weigh by 1 3 3 1
+// / 8, of variance 3/4 in pixels of what they read, as do all steps back up; its variance is
+//     1/4 + 3/4 (4 + ... + 4^(l-1)) + 3/4 (1 + 4 + ... + 4^(l-1)) = 4^l / 2 - 1.
 #pragma once
 
 #include "render/frame_tiles.h"
@@ -15,8 +15,8 @@
 
 namespace ibl {
 
-/// The least l >= 1 (not a whole number) whose variance (4^l - 1) / 2 is that of `deviation`, in
-/// pixels of the picture.
+/// The l (not a whole number) whose variance 4^l / 2 - 1 is that of `deviation`, in pixels of the
+/// picture; 1 at least.
 double levelOfDeviation(double deviation);
 
 /// Level 1 of the picture times `exposure`: all of it, or its part above the threshold (see
@@ -30,7 +30,9 @@ Target reduceFrame(Passes& passes, FrameTiles& tiles, double exposure,
 void addLevels(Passes& passes, const Target& base, std::span<const double> weights,
                const Target& sum);
 
-/// `base` blurred by a Gaussian of that deviation, in its pixels, in some smaller size that holds it.
-Target blurred(Passes& passes, const Target& base, double deviation);
+/// Level 1 blurred, in some smaller size that holds it, such that it is the picture, of `frame`
+/// pixels, blurred by a Gaussian of that deviation once it is enlarged to level 1 and to the
+/// picture.
+Target blurred(Passes& passes, const Target& base, const V2i& frame, double deviation);
 
 } // namespace ibl

@@ -40,7 +40,8 @@ void requireSound(const DisplayOptions& o) {
             throw usage(std::string(p.name) + " is out of its range; correct it");
         }
     }
-    if (o.tone_map == ToneMap::display && !o.transform) throw usage("no display transform is given");
+    if (o.tone_map == ToneMap::display && !o.transform)
+        throw usage("no display transform is given");
 }
 
 // As much of each octave of widths from level 1 to `level`, the last one in part; 1 in all times
@@ -79,7 +80,7 @@ struct DisplayChain::State {
     void addStreaks(const Target& bright, int frame_height, const Target& sum);
     Target retinexSurrounds(FrameTiles& tiles, double exposure);
     Texture localLevels(FrameTiles& tiles, double exposure);
-    Image run(const Image& picture, double exposure, ToneMap tone_map, bool with_lens, int threads);
+    void run(Image& picture, double exposure, ToneMap tone_map, bool with_lens, int threads);
     const Program& lastProgram(ToneMap tone_map, bool straight, bool with_lens, bool even);
 };
 
@@ -122,7 +123,8 @@ void DisplayChain::State::addStreaks(const Target& bright, int frame_height, con
     const int steps = std::max(1, static_cast<int>(std::ceil(std::log2(length) / 2)));
     Target targets[2] = {makeTarget(bright.size, GL_RGBA32F), makeTarget(bright.size, GL_RGBA32F)};
     for (int ray = 0; ray < options.streak_count; ++ray) {
-        const double turn = options.streak_angle / 360 + static_cast<double>(ray) / options.streak_count;
+        const double turn =
+            options.streak_angle / 360 + static_cast<double>(ray) / options.streak_count;
         const double angle = 2 * std::numbers::pi * turn;
         setUniform(program, "direction", V2d(std::cos(angle), -std::sin(angle)));
         const Texture* from = &bright.texture;
@@ -153,13 +155,10 @@ Target DisplayChain::State::retinexSurrounds(FrameTiles& tiles, double exposure)
     setUniform(program, "size", base.size);
     setUniform(program, "eps", eps);
     for (int n = 0; n < scales; ++n) {
-        // Widths in a geometric series. The reduction to the base has blurred by a variance of 3/4
-        // already, and the way back blurs as much.
+        // Widths in a geometric series.
         const double share = scales > 1 ? static_cast<double>(n) / (scales - 1) : 0;
         const double deviation = narrow * std::pow(wide / narrow, share) * tiles.frameSize().y;
-        const double ratio = static_cast<double>(base.size.y) / tiles.frameSize().y;
-        const double variance = std::max(0.0, deviation * deviation - 1.5) * ratio * ratio;
-        const Target surround = blurred(passes, base, std::sqrt(variance));
+        const Target surround = blurred(passes, base, tiles.frameSize(), deviation);
         setUniform(program, "weight", std::pow(scales - n, f) / weights);
         glBindTextureUnit(0, surround.texture.id());
         passes.add(program, sum);
@@ -171,7 +170,9 @@ Target DisplayChain::State::retinexSurrounds(FrameTiles& tiles, double exposure)
 Texture DisplayChain::State::localLevels(FrameTiles& tiles, double exposure) {
     constexpr int kLevels = 7, kMultiple = 1 << kLevels;
     const V2i frame = tiles.frameSize();
-    const auto paddedHalf = [](int n) { return kMultiple * ((n + 2 * kMultiple - 1) / (2 * kMultiple)); };
+    const auto paddedHalf = [](int n) {
+        return kMultiple * ((n + 2 * kMultiple - 1) / (2 * kMultiple));
+    };
     const V2i size{paddedHalf(frame.x), paddedHalf(frame.y)};
     const int limit = getInteger(GL_MAX_TEXTURE_SIZE);
     if (std::max(size.x, size.y) > limit) {
@@ -192,9 +193,11 @@ Texture DisplayChain::State::localLevels(FrameTiles& tiles, double exposure) {
     const bool whole = std::max(frame.x, frame.y) <= tiles.edge();
     for (int y = 0; y < size.y; y += whole ? size.y : step) {
         for (int x = 0; x < size.x; x += whole ? size.x : step) {
-            const V2i end = whole ? size : V2i(std::min(size.x, x + step), std::min(size.y, y + step));
+            const V2i end =
+                whole ? size : V2i(std::min(size.x, x + step), std::min(size.y, y + step));
             const auto range = [](int begin, int past, int n) {
-                return std::pair(std::clamp(2 * begin - 2, 0, n - 1), std::clamp(2 * past + 1, 1, n));
+                return std::pair(std::clamp(2 * begin - 2, 0, n - 1),
+                                 std::clamp(2 * past + 1, 1, n));
             };
             const auto [left, right] = range(x, end.x, frame.x);
             const auto [top, bottom] = range(y, end.y, frame.y);
@@ -250,9 +253,10 @@ const Program& DisplayChain::State::lastProgram(ToneMap tone_map, bool straight,
     return program;
 }
 
-// The picture through the lens, if asked, and through a tone map.
-Image DisplayChain::State::run(const Image& picture, double exposure, ToneMap tone_map,
-                               bool with_lens, int threads) {
+// The picture through the lens, if asked, and through a tone map. What the last pass reads of the
+// picture is the pixel that it makes, so the result may take its place band by band.
+void DisplayChain::State::run(Image& picture, double exposure, ToneMap tone_map, bool with_lens,
+                              int threads) {
     FrameTiles tiles(picture, tile_edge, threads);
     const V2i frame = tiles.frameSize();
     const bool straight = picture.channels == 4;
@@ -271,10 +275,10 @@ Image DisplayChain::State::run(const Image& picture, double exposure, ToneMap to
     bindLuts(luts, last, kLutUnit);
 
     // The last pass goes in bands, so that its target is little memory.
-    const V2i step{std::min(frame.x, tiles.edge()),
-                   std::min({frame.y, tiles.edge(), kBandPixels / std::min(frame.x, tiles.edge())})};
+    const V2i step{
+        std::min(frame.x, tiles.edge()),
+        std::min({frame.y, tiles.edge(), kBandPixels / std::min(frame.x, tiles.edge())})};
     const Target target = makeTarget(step, GL_RGBA32F);
-    Image made(frame.x, frame.y, picture.channels);
     glPixelStorei(GL_PACK_ROW_LENGTH, frame.x);
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     for (int y = 0; y < frame.y; y += step.y) {
@@ -286,19 +290,19 @@ Image DisplayChain::State::run(const Image& picture, double exposure, ToneMap to
             setUniform(last, "texture_origin", tiles.origin());
             glBindTextureUnit(0, tiles.texture().id());
             passes.draw(last, target.framebuffer, {{0, 0}, size});
-            glReadPixels(0, 0, size.x, size.y, straight ? GL_RGBA : GL_RGB, GL_FLOAT, made.at(x, y));
+            glReadPixels(0, 0, size.x, size.y, straight ? GL_RGBA : GL_RGB, GL_FLOAT,
+                         picture.at(x, y));
         }
     }
     glPixelStorei(GL_PACK_ROW_LENGTH, 0);
     checkGl("applying the display chain");
-    return made;
 }
 
 DisplayChain::DisplayChain(const EglContext&, const DisplayOptions& options,
                            std::optional<std::filesystem::path> shader_folder, int tile_edge) {
     requireSound(options);
-    state_ = std::make_unique<State>(
-        State{options, Passes(std::move(shader_folder)), tile_edge, {}});
+    state_ =
+        std::make_unique<State>(State{options, Passes(std::move(shader_folder)), tile_edge, {}});
     if (options.transform) state_->luts = uploadLuts(*options.transform);
 }
 
@@ -306,7 +310,7 @@ DisplayChain::~DisplayChain() = default;
 DisplayChain::DisplayChain(DisplayChain&&) noexcept = default;
 DisplayChain& DisplayChain::operator=(DisplayChain&&) noexcept = default;
 
-Image DisplayChain::apply(const Image& picture, double exposure_stops, int threads) {
+void DisplayChain::apply(Image& picture, double exposure_stops, int threads) {
     const double exposure = std::exp2(exposure_stops);
     if (!(exposure > 0 && exposure < std::numeric_limits<float>::max())) {
         throw usage("the exposure is beyond what floats hold; stay within 120 stops");
@@ -317,10 +321,13 @@ Image DisplayChain::apply(const Image& picture, double exposure_stops, int threa
     const DisplayOptions& o = state_->options;
     const bool lens = state_->glows() || o.vignette > 0;
     const bool local = o.tone_map == ToneMap::retinex || o.tone_map == ToneMap::reinhardLocal;
-    if (!lens || !local) return state_->run(picture, exposure, o.tone_map, lens, threads);
+    if (!lens || !local) {
+        state_->run(picture, exposure, o.tone_map, lens, threads);
+        return;
+    }
     // A map that looks at neighbours must see what the lens made of them.
-    const Image seen = state_->run(picture, exposure, ToneMap::none, true, threads);
-    return state_->run(seen, 1, o.tone_map, false, threads);
+    state_->run(picture, exposure, ToneMap::none, true, threads);
+    state_->run(picture, 1, o.tone_map, false, threads);
 }
 
 } // namespace ibl

@@ -36,14 +36,14 @@ void FrameTiles::hold(const PixelRect& part) {
         texture_ = makeTexture(GL_TEXTURE_2D, GL_RGBA32F, size.x, size.y);
     }
     held_ = wanted;
-    // In bands, so that little memory is touched. The fourth channel is added here: drivers are slow
-    // at it, and shaders at texels of three.
-    constexpr int kRows = 256;
+    // In bands, so that little memory is touched. The fourth channel is added here: drivers are
+    // slow at it, and shaders at texels of three.
+    constexpr int kRows = 64;
     const std::size_t row = static_cast<std::size_t>(size.x) * 4;
     rgba_.resize(row * static_cast<std::size_t>(std::min(kRows, size.y)));
     for (int first = 0; first < size.y; first += kRows) {
         const int rows = std::min(kRows, size.y - first);
-        parallelForRuns(static_cast<std::size_t>(rows), 64, threads_,
+        parallelForRuns(static_cast<std::size_t>(rows), 16, threads_,
                         [&](std::size_t begin, std::size_t end) {
                             for (std::size_t y = begin; y < end; ++y) {
                                 const int down = held_.min.y + first + static_cast<int>(y);

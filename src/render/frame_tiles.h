@@ -17,7 +17,8 @@ struct Target {
 };
 Target makeTarget(const V2i& size, GLenum format);
 
-/// Uploads parts of a picture of 3 or 4 channels, which must outlive it, as RGBA floats.
+/// Uploads parts of a picture of 3 or 4 channels, which must outlive it, as RGBA floats. A part is
+/// uploaded as it is when it is first wanted.
 class FrameTiles {
 public:
     /// No texture gets larger than `edge` in either direction.
@@ -26,8 +27,8 @@ public:
     V2i frameSize() const { return {frame_.width, frame_.height}; }
     int edge() const { return edge_; }
 
-    /// Sees to it that the texture holds `part`, of at most edge() a side: the whole picture if that
-    /// fits, otherwise just the part. What it held before is gone.
+    /// Sees to it that the texture holds `part`, of at most edge() a side: the whole picture if
+    /// that fits, otherwise just the part. What it held before is gone.
     void hold(const PixelRect& part);
     const Texture& texture() const { return texture_; }
     /// Where the texture's first pixel stands in the picture.
@@ -39,7 +40,7 @@ private:
     int threads_;
     PixelRect held_{{0, 0}, {0, 0}};
     Texture texture_;
-    std::vector<float> rgba_;
+    std::vector<float, UninitialisedAllocator<float>> rgba_;
 };
 
 } // namespace ibl
