@@ -105,7 +105,8 @@ void bindToneMap(CLI::App& app, DisplayArguments& a) {
                    "--" + name, [&a, name](double value) { a.tone_parameters[name] = value; },
                    help_text)
                 ->check(CLI::Range(p.least, p.most))
-                ->type_name("X")
+                ->check(p.whole ? CLI::Validator(CLI::TypeValidator<int>()) : CLI::Validator())
+                ->type_name(p.whole ? "N" : "X")
                 ->group("Tone map");
         }
     }

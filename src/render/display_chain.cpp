@@ -36,7 +36,8 @@ void requireSound(const DisplayOptions& o) {
     if (!sound) throw usage("a parameter of an effect is out of its range; correct it");
     std::size_t i = 0;
     for (const ToneParameter& p : toneMapInfo(o.tone_map).parameters) {
-        if (!within(o.parameters[i++], p.least, p.most)) {
+        const double value = o.parameters[i++];
+        if (!within(value, p.least, p.most) || (p.whole && value != std::floor(value))) {
             throw usage(std::string(p.name) + " is out of its range; correct it");
         }
     }

@@ -22,8 +22,8 @@ double luminance(double r, double g, double b) {
     return value > 0 ? std::min(value, largest) : 0; // NaN: 0
 }
 
-// The sum of logarithms is the logarithm of a product. Seven factors from 1e-30 to 3.5e38 stay within
-// double's range, at an error of 1e-15 for them all.
+// The sum of logarithms is the logarithm of a product. Seven factors from 1e-30 to 3.5e38 stay
+// within double's range, at an error of 1e-15 for them all.
 constexpr int kFactors = 7;
 
 void addRow(Part& part, const float* p, int width, int channels, double delta) {

@@ -10,8 +10,8 @@ namespace ibl {
 /// What is in a picture's pixels: bad ones, and the log-average.
 struct PictureCensus {
     std::size_t nan = 0, infinite = 0, negative = 0; ///< pixels with such a channel, in this order
-    /// exp(mean(ln(delta + L))), L the luminance (0.2126, 0.7152, 0.0722), 0 where it is negative or
-    /// no number, largest float where it is infinite (Reinhard et al. 2002, eq. 1, without the
+    /// exp(mean(ln(delta + L))), L the luminance (0.2126, 0.7152, 0.0722), 0 where it is negative
+    /// or no number, largest float where it is infinite (Reinhard et al. 2002, eq. 1, without the
     /// misprint of the 1/N). With alpha the colours are straight and weigh by alpha; delta where
     /// nothing is opaque.
     double log_average = 0;

@@ -19,10 +19,10 @@ constexpr std::array kReinhardLocal{
     ToneParameter{"local-contrast", 0.05, 1e-4, 10,
                   "Of reinhard-local: contrast at which a surround ends"}};
 constexpr std::array kRetinex{
-    ToneParameter{"retinex-k", 0.7, 0, 1, "Of retinex: share of the surround that is divided out"},
+    ToneParameter{"retinex-k", 0.5, 0, 1, "Of retinex: share of the surround that is divided out"},
     ToneParameter{"retinex-f", 1, 0, 8, "Of retinex: scale n of N weighs (N - n)^f, narrowest 0"},
     ToneParameter{"retinex-eps", 1e-3, 1e-6, 1, "Of retinex: added ahead of logarithms"},
-    ToneParameter{"retinex-scales", 3, 1, 8, "Of retinex: number of surrounds"},
+    ToneParameter{"retinex-scales", 3, 1, 8, "Of retinex: number of surrounds", true},
     ToneParameter{"retinex-narrow", 0.02, 0.001, 1,
                   "Of retinex: narrowest surround's deviation over the picture's height"},
     ToneParameter{"retinex-wide", 0.25, 0.001, 1, "Of retinex: the widest one's"}};
@@ -32,8 +32,8 @@ constexpr std::array kFilmic{
 constexpr std::array<ToneMapInfo, 10> kToneMaps{{
     {ToneMap::none, "none", "", "noTone", "", Per::channel, "linear; PNG clips at 1", {}},
     {ToneMap::clamp, "clamp", "", "clampTone", "", Per::channel, "clipped to 0 and 1", {}},
-    {ToneMap::exponential, "exponential", "exponentialCurve", "", "", Per::channel,
-     "1 - exp(-c x)", kExponential},
+    {ToneMap::exponential, "exponential", "exponentialCurve", "", "", Per::channel, "1 - exp(-c x)",
+     kExponential},
     {ToneMap::scurve, "scurve", "scurveCurve", "", "", Per::channel, "x^n / (x^n + sigma^n)",
      kScurve},
     {ToneMap::reinhard, "reinhard", "reinhardCurve", "", "", Per::luminance,
@@ -43,10 +43,22 @@ constexpr std::array<ToneMapInfo, 10> kToneMaps{{
     {ToneMap::retinex, "retinex", "", "retinexTone", "retinex.glsl", Per::channel,
      "multi-scale Retinex", kRetinex},
     {ToneMap::filmic, "filmic", "filmicCurve", "", "", Per::channel, "Hable's curve", kFilmic},
-    {ToneMap::aces, "aces", "", "acesTone", "", Per::channel, "a fit of the ACES output transform",
+    {ToneMap::aces,
+     "aces",
+     "",
+     "acesTone",
+     "",
+     Per::channel,
+     "a fit of the ACES output transform",
      {}},
-    {ToneMap::display, "display", "", "displayTone", "ocio_display.glsl", Per::channel,
-     "a view of an OpenColorIO config", {}},
+    {ToneMap::display,
+     "display",
+     "",
+     "displayTone",
+     "ocio_display.glsl",
+     Per::channel,
+     "a view of an OpenColorIO config",
+     {}},
 }};
 
 } // namespace

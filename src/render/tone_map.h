@@ -11,11 +11,11 @@ namespace ibl {
 /// Curves from exposed radiance x >= 0 to display light; negative values count as 0, except that
 /// `none` keeps them. p.NAME are the parameters of the table.
 enum class ToneMap {
-    none,        ///< x
-    clamp,       ///< min(x, 1)
-    exponential, ///< 1 - exp(-p.rate x) (Hin Jang)
-    scurve,      ///< x^n / (x^n + sigma^n) (Naka and Rushton 1966)
-    reinhard,    ///< x (1 + x / white^2) / (1 + x) (Reinhard et al. 2002, eq. 4)
+    none,          ///< x
+    clamp,         ///< min(x, 1)
+    exponential,   ///< 1 - exp(-p.rate x) (Hin Jang)
+    scurve,        ///< x^n / (x^n + sigma^n) (Naka and Rushton 1966)
+    reinhard,      ///< x (1 + x / white^2) / (1 + x) (Reinhard et al. 2002, eq. 4)
     reinhardLocal, ///< x / (1 + V), V the largest surround without contrast (the same, eq. 5 to 9)
     retinex,       ///< multi-scale Retinex (Rahman, Jobson and Woodell 1996)
     filmic,        ///< Hable's curve (2010): f(2 x) / f(white)
@@ -31,6 +31,7 @@ struct ToneParameter {
     double standard;
     double least, most;
     std::string_view summary;
+    bool whole = false; ///< a whole number
 };
 constexpr std::size_t kToneParameters = 6;
 using ToneParameters = std::array<double, kToneParameters>;
@@ -38,7 +39,7 @@ using ToneParameters = std::array<double, kToneParameters>;
 struct ToneMapInfo {
     ToneMap map;
     std::string_view name;
-    std::string_view curve; ///< GLSL function of one value; "" where `function` is the whole map
+    std::string_view curve;    ///< GLSL function of one value; "" where `function` is the whole map
     std::string_view function; ///< GLSL function of a colour
     std::string_view file;     ///< of the shader folder, beside tone_maps.glsl; "" none
     Per per;                   ///< unless asked otherwise, which only curves can be
