@@ -1,4 +1,5 @@
-// Parts of the program that are loaded when first needed, since the libraries behind them take long.
+// Parts of the program that are loaded when first needed, since the libraries behind them take
+// long.
 #pragma once
 
 #include <string>

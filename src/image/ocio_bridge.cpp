@@ -10,12 +10,12 @@ namespace ibl {
 DisplayTransform loadDisplayTransform(const DisplayView& view) {
     std::string problem;
     void* module = openModule("ibltool_ocio.so", problem);
-    const auto load =
-        module ? reinterpret_cast<OcioLoad>(::dlsym(module, kOcioLoadName)) : nullptr;
+    const auto load = module ? reinterpret_cast<OcioLoad>(::dlsym(module, kOcioLoadName)) : nullptr;
     if (module && !load) problem = "the module is of another version";
     if (!load) {
-        throw Error(ExitCode::missing, "--tonemap display: needs OpenColorIO, which cannot be loaded (" +
-                                           problem + "); install the package libopencolorio2.1");
+        throw Error(ExitCode::missing,
+                    "--tonemap display: needs OpenColorIO, which cannot be loaded (" + problem +
+                        "); install the package libopencolorio2.1");
     }
     DisplayTransform transform;
     if (!load(view, transform, problem)) {

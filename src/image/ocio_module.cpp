@@ -70,8 +70,12 @@ void addTables(const OCIO::GpuShaderDesc& shader, DisplayTransform& transform) {
         shader.getTextureValues(i, values);
         const int channels = type == OCIO::GpuShaderDesc::TEXTURE_RED_CHANNEL ? 1 : 3;
         const std::size_t count = static_cast<std::size_t>(width) * height * channels;
-        transform.luts.push_back({sampler, static_cast<int>(width), static_cast<int>(height), 0,
-                                  channels, interpolation != OCIO::INTERP_NEAREST,
+        transform.luts.push_back({sampler,
+                                  static_cast<int>(width),
+                                  static_cast<int>(height),
+                                  0,
+                                  channels,
+                                  interpolation != OCIO::INTERP_NEAREST,
                                   {values, values + count}});
     }
     for (unsigned i = 0; i < shader.getNum3DTextures(); ++i) {
@@ -83,8 +87,8 @@ void addTables(const OCIO::GpuShaderDesc& shader, DisplayTransform& transform) {
         shader.get3DTextureValues(i, values);
         const int n = static_cast<int>(edge);
         const std::size_t count = static_cast<std::size_t>(edge) * edge * edge * 3;
-        transform.luts.push_back({sampler, n, n, n, 3, interpolation == OCIO::INTERP_LINEAR,
-                                  {values, values + count}});
+        transform.luts.push_back(
+            {sampler, n, n, n, 3, interpolation == OCIO::INTERP_LINEAR, {values, values + count}});
     }
 }
 

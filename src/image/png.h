@@ -17,11 +17,12 @@ struct PngOptions {
     /// Adds a pattern of 16x16 thresholds (Bayer 1973) before rounding down, so that the mean over
     /// neighbours is right between two codes; the same pattern in every file.
     bool dither = false;
-    bool encoded = false; ///< the values are encoded for a display already; otherwise they are linear
+    bool encoded =
+        false; ///< the values are encoded for a display already; otherwise they are linear
 };
 
-/// Writes scene-linear floats, encoded to sRGB and rounded to nearest, or encoded values as they are;
-/// premultiplied alpha is divided out. `threads` as everywhere.
+/// Writes scene-linear floats, encoded to sRGB and rounded to nearest, or encoded values as they
+/// are; premultiplied alpha is divided out. `threads` as everywhere.
 WriteLosses writePng(OutputFile& file, const Image& image, const PngOptions& options = {},
                      int threads = 0);
 
