@@ -1,10 +1,10 @@
 #include "cli/arguments.h"
 #include "cli/commands.h"
+#include "cli/display_options.h"
 #include "cli/prefiltering.h"
 #include "cli/session.h"
 
 #include "core/error.h"
-#include "image/png.h"
 #include "image/read.h"
 #include "render/renderer.h"
 
@@ -37,7 +37,7 @@ struct RenderOptions {
     double distance = 4;
     double fov = 40;
     FrameOptions frame;
-    Display display;
+    DisplayArguments display;
     std::string shader_folder;
 };
 
@@ -110,35 +110,10 @@ Background backgroundOf(Session& session, const RenderOptions& options) {
     return std::move(file.image);
 }
 
-bool isPng(const ImageOutputOptions& output) {
-    if (!output.format.empty()) return output.format == "png";
-    std::string extension = std::filesystem::path(output.output).extension().string();
-    for (char& c : extension)
-        c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return extension == ".png";
-}
-
-void writeFrame(Session& session, const RenderOptions& options, const WriteOptions& how,
-                Renderer& renderer) {
-    const Camera camera = cameraOf(options);
-    if (!isPng(options.output)) {
-        const Image frame =
-            session.stage("draw", [&] { return renderer.renderLinear(camera, options.display); });
-        session.stage("write", [&] { session.write(options.output.output, frame, how); });
-        return;
-    }
-    const ByteImage frame =
-        session.stage("draw", [&] { return renderer.renderBytes(camera, options.display); });
-    session.stage("write", [&] {
-        writePng8(session.outputs().add(options.output.output), frame.pixels, frame.width,
-                  frame.height, frame.channels, session.threads());
-        session.addOutput(options.output.output);
-    });
-}
-
 void runRender(const RenderOptions& options) {
     Session session("render", options.common);
     const WriteOptions how = writeOptions(options.output, options.common);
+    requireFitting(options.display, options.output);
     if (options.reflectivity && options.shader != Shader::mirrorDiffuse) {
         throw Error(ExitCode::usage,
                     "--reflectivity is of the shader mirror-diffuse; leave it out");
@@ -178,7 +153,9 @@ void runRender(const RenderOptions& options) {
     FrameOptions frame = options.frame;
     if (!options.shader_folder.empty()) frame.shader_folder = options.shader_folder;
     Renderer renderer = session.stage("upload", [&] { return Renderer(context, scene, frame); });
-    writeFrame(session, options, how, renderer);
+    Image picture = session.stage("draw", [&] { return renderer.render(cameraOf(options)); });
+    showPicture(session, context, options.display, std::move(picture), std::nullopt, options.output,
+                how, frame.shader_folder);
     session.finish();
 }
 
@@ -243,20 +220,6 @@ void bindPicture(CLI::App& app, RenderOptions& options) {
         ->type_name("WHAT")
         ->capture_default_str()
         ->group("Picture");
-    app.add_option("--exposure", options.display.exposure, "Stops: radiance is multiplied by 2^EV")
-        ->check(CLI::Range(-64.0, 64.0))
-        ->type_name("EV")
-        ->capture_default_str()
-        ->group("Picture");
-    app.add_option_function<std::string>(
-           "--tonemap",
-           [&options](const std::string& name) {
-               options.display.tone_map = name == "scurve" ? ToneMap::scurve : ToneMap::none;
-           },
-           "none (default; PNG clips at 1) or scurve: c^n / (c^n + sigma^n)")
-        ->check(CLI::IsMember({"none", "scurve"}))
-        ->type_name("NAME")
-        ->group("Picture");
 }
 
 } // namespace
@@ -296,6 +259,7 @@ Command bindRender(CLI::App& root) {
         ->group("Object");
     bindCamera(*app, *options);
     bindPicture(*app, *options);
+    bindDisplay(*app, options->display);
     bindImageOutput(*app, options->output);
     bindCommon(*app, options->common);
     return {app, [options] { runRender(*options); }};

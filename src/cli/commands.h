@@ -20,6 +20,7 @@ Command bindSpecular(CLI::App& root);
 Command bindBrdf(CLI::App& root);
 Command bindLights(CLI::App& root);
 Command bindRender(CLI::App& root);
+Command bindTonemap(CLI::App& root);
 Command bindBake(CLI::App& root);
 Command bindInfo(CLI::App& root);
 

@@ -35,8 +35,8 @@ void runCommandLine(int argc, char** argv) {
     root.set_version_flag("--version", "ibltool " IBLTOOL_VERSION);
     root.footer(kFooter);
     const std::vector<Command> commands = {
-        bindConvert(root), bindDiffuse(root), bindSpecular(root), bindBrdf(root),
-        bindLights(root),  bindRender(root),  bindBake(root),     bindInfo(root),
+        bindConvert(root), bindDiffuse(root), bindSpecular(root), bindBrdf(root), bindLights(root),
+        bindRender(root),  bindTonemap(root), bindBake(root),     bindInfo(root),
     };
     try {
         root.parse(argc, argv);

@@ -8,10 +8,17 @@
 
 namespace ibl {
 
+/// Memory for pixels, in huge pages where it is large and the system has them: touching memory for
+/// the first time costs more, page by page, than most of what is done to a pixel.
+void* allocatePixels(std::size_t bytes);
+void freePixels(void* memory);
+
 /// An allocator whose vectors leave new elements uninitialised, so that a large image that is
 /// about to be filled is not written twice.
 template <class T>
 struct UninitialisedAllocator : std::allocator<T> {
+    T* allocate(std::size_t count) { return static_cast<T*>(allocatePixels(count * sizeof(T))); }
+    void deallocate(T* memory, std::size_t) { freePixels(memory); }
     template <class U>
     struct rebind {
         using other = UninitialisedAllocator<U>;

@@ -1,38 +1,18 @@
 #include "image/oiio.h"
 
 #include "core/error.h"
-
-#include <array>
-#include <filesystem>
+#include "image/module_file.h"
 
 #include <dlfcn.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
 namespace ibl {
-namespace fs = std::filesystem;
 namespace {
-
-/// The module lies beside the program (in a build folder) or in the library folder of an
-/// installation.
-void* openModule(std::string& problem) {
-    std::error_code error;
-    const fs::path program = fs::read_symlink("/proc/self/exe", error);
-    for (const char* folder : {".", IBLTOOL_MODULE_FOLDER}) {
-        const fs::path path = program.parent_path() / folder / "ibltool_oiio.so";
-        if (!fs::exists(path, error)) continue;
-        // Never closed: OpenImageIO keeps threads and caches of its own.
-        void* module = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
-        if (!module) problem = ::dlerror();
-        return module;
-    }
-    problem = "the module ibltool_oiio.so is not installed";
-    return nullptr;
-}
 
 OiioModule loadModule(const std::string& name) {
     std::string problem;
-    void* module = openModule(problem);
+    void* module = openModule("ibltool_oiio.so", problem);
     OiioModule functions;
     if (module) {
         functions.read = reinterpret_cast<OiioModule::Read>(::dlsym(module, kOiioReadName));

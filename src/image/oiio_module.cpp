@@ -149,7 +149,7 @@ void encode(std::vector<float>& row, int channels, float largest, WriteLosses& l
             v = 0;
         }
         const bool is_alpha = channels == 4 && i % 4 == 3;
-        if (encoded && !is_alpha) v = linearToSrgb(v);
+        if (encoded && !is_alpha) v = static_cast<float>(linearToSrgb(v));
     }
 }
 

@@ -1,4 +1,4 @@
-// PNG, for pictures to look at: 8 bits a channel, sRGB.
+// PNG, for pictures to look at: 8 or 16 bits a channel, sRGB.
 #pragma once
 
 #include "image/image.h"
@@ -12,14 +12,19 @@
 
 namespace ibl {
 
-/// Writes bytes that are sRGB-encoded already, `channels` (3: RGB, 4: RGB and alpha) a pixel, row 0
-/// at the top. PNG's alpha is not premultiplied, so neither are the colours here.
-/// bytes.size() == width * height * channels. `threads` as everywhere.
-void writePng8(OutputFile& file, std::span<const std::uint8_t> bytes, int width, int height,
-               int channels, int threads = 0);
+struct PngOptions {
+    int bits = 8; ///< a channel: 8 or 16
+    /// Adds a pattern of 16x16 thresholds (Bayer 1973) before rounding down, so that the mean over
+    /// neighbours is right between two codes; the same pattern in every file.
+    bool dither = false;
+    bool encoded =
+        false; ///< the values are encoded for a display already; otherwise they are linear
+};
 
-/// Writes scene-linear floats, encoded to sRGB and rounded; premultiplied alpha is divided out.
-WriteLosses writePng(OutputFile& file, const Image& image, int threads = 0);
+/// Writes scene-linear floats, encoded to sRGB and rounded to nearest, or encoded values as they
+/// are; premultiplied alpha is divided out. `threads` as everywhere.
+WriteLosses writePng(OutputFile& file, const Image& image, const PngOptions& options = {},
+                     int threads = 0);
 
 /// Decodes a PNG of any type, 8 or 16 bits: colours from sRGB to linear, alpha premultiplied.
 /// `name` is for messages.

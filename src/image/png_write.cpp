@@ -79,15 +79,12 @@ Strip deflateStrip(const std::vector<std::uint8_t>& filtered, bool last) {
     return strip;
 }
 
-/// Writes the file, getting rows of encoded bytes from `rowAt(y, buffer)`, which returns where row
-/// y is: in the buffer that it was given, or elsewhere.
-template <class RowAt>
-void writeRows(OutputFile& file, int width, int height, int channels, int threads,
-               const RowAt& rowAt) {
-    if (width < 1 || height < 1 || (channels != 3 && channels != 4)) {
-        throw std::logic_error("writePng8 takes RGB or RGBA pixels");
-    }
-    const std::size_t row_bytes = static_cast<std::size_t>(width) * channels;
+/// Writes the file, getting the bytes of row y from `encodeRow(y, buffer)`.
+template <class EncodeRow>
+void writeRows(OutputFile& file, int width, int height, int channels, bool is_srgb, int bits,
+               int threads, const EncodeRow& encodeRow) {
+    const std::size_t pixel_bytes = static_cast<std::size_t>(channels * bits / 8);
+    const std::size_t row_bytes = static_cast<std::size_t>(width) * pixel_bytes;
     const std::size_t rows_a_strip = std::max<std::size_t>(1, kStripBytes / (row_bytes + 1));
     const std::size_t rows = static_cast<std::size_t>(height);
     std::vector<Strip> strips((rows + rows_a_strip - 1) / rows_a_strip);
@@ -95,7 +92,8 @@ void writeRows(OutputFile& file, int width, int height, int channels, int thread
         std::vector<std::uint8_t> filtered((last - first) * (row_bytes + 1));
         std::vector<std::uint8_t> buffer(row_bytes);
         for (std::size_t y = first; y < last; ++y) {
-            filterSub(rowAt(y, buffer), row_bytes, static_cast<std::size_t>(channels),
+            encodeRow(y, buffer.data());
+            filterSub(buffer.data(), row_bytes, pixel_bytes,
                       filtered.data() + (y - first) * (row_bytes + 1));
         }
         strips[first / rows_a_strip] = deflateStrip(filtered, last == rows);
@@ -105,9 +103,9 @@ void writeRows(OutputFile& file, int width, int height, int channels, int thread
     std::string header;
     appendBigEndian(header, static_cast<std::uint32_t>(width));
     appendBigEndian(header, static_cast<std::uint32_t>(height));
-    header += {'\x08', channels == 4 ? '\x06' : '\x02', '\0', '\0', '\0'};
+    header += {static_cast<char>(bits), channels == 4 ? '\x06' : '\x02', '\0', '\0', '\0'};
     writeChunk(file, "IHDR", header);
-    writeChunk(file, "sRGB", std::string_view("\0", 1)); // perceptual intent
+    if (is_srgb) writeChunk(file, "sRGB", std::string_view("\0", 1)); // perceptual intent
     uLong checksum = adler32_z(0, nullptr, 0);
     for (std::size_t s = 0; s < strips.size(); ++s) {
         Strip& strip = strips[s];
@@ -122,23 +120,65 @@ void writeRows(OutputFile& file, int width, int height, int channels, int thread
     writeChunk(file, "IEND", {});
 }
 
-/// One row of linear floats to sRGB bytes. Values outside [0, 1] are counted.
-WriteLosses encodeRow(const Image& image, int y, std::uint8_t* out) {
+/// The threshold of Bayer's 16x16 pattern at a pixel, above 0 and below 1: the bits of x ^ y and y,
+/// interleaved from the lowest, are those of the threshold from the highest.
+double ditherThreshold(int x, int y) {
+    int rank = 0;
+    for (int bit = 0; bit < 4; ++bit) {
+        rank = 4 * rank + 2 * (((x ^ y) >> bit) & 1) + ((y >> bit) & 1);
+    }
+    return (rank + 0.5) / 256;
+}
+
+/// The code of a value with the pattern, or of more bits than eight.
+std::uint32_t codeOf(float value, const PngOptions& options, double threshold) {
+    const double linear = value > 0 ? std::min(value, 1.0F) : 0; // NaN: 0
+    const double encoded = options.encoded ? linear : linearToSrgb(linear);
+    return static_cast<std::uint32_t>(encoded * ((1 << options.bits) - 1) + threshold);
+}
+
+void count(WriteLosses& losses, float value) {
+    losses.above += value > 1;
+    losses.below += value < 0;
+    losses.not_number += std::isnan(value);
+}
+
+/// One row of straight colours of 8 bits without a pattern, which needs no powers.
+WriteLosses encodeRowByTable(const float* row, std::size_t values, std::uint8_t* out) {
+    linearToSrgb8(row, values, out);
     WriteLosses losses;
+    for (std::size_t i = 0; i < values; ++i)
+        count(losses, row[i]);
+    return losses;
+}
+
+/// One row of floats to bytes. Values outside [0, 1] are counted.
+WriteLosses encodeRow(const Image& image, int y, const PngOptions& options, std::uint8_t* out) {
+    const bool plain = options.bits == 8 && !options.dither && !options.encoded;
+    if (plain && image.channels == 3) {
+        return encodeRowByTable(image.row(y), image.rowFloats(), out);
+    }
+    WriteLosses losses;
+    const auto put = [&](std::uint32_t code) {
+        if (options.bits == 16) *out++ = static_cast<std::uint8_t>(code >> 8);
+        *out++ = static_cast<std::uint8_t>(code);
+    };
     const float* p = image.row(y);
-    for (int x = 0; x < image.width; ++x, p += image.channels, out += image.channels) {
-        float unpremultiply = 1;
+    for (int x = 0; x < image.width; ++x, p += image.channels) {
+        float unpremultiply = 1, alpha = 1;
         if (image.channels == 4) {
-            const float alpha = std::clamp(std::isnan(p[3]) ? 0.0F : p[3], 0.0F, 1.0F);
-            out[3] = static_cast<std::uint8_t>(alpha * 255 + 0.5F);
+            alpha = std::clamp(std::isnan(p[3]) ? 0.0F : p[3], 0.0F, 1.0F);
             unpremultiply = alpha > 0 ? 1 / alpha : 0;
         }
         for (int c = 0; c < 3; ++c) {
             const float v = p[c] * unpremultiply;
-            out[c] = linearToSrgb8(v);
-            losses.above += v > 1;
-            losses.below += v < 0;
-            losses.not_number += std::isnan(v);
+            const double threshold = options.dither ? ditherThreshold(x, y) : 0.5;
+            put(plain ? linearToSrgb8(v) : codeOf(v, options, threshold));
+            count(losses, v);
+        }
+        if (image.channels == 4) {
+            put(static_cast<std::uint32_t>(alpha * static_cast<float>((1 << options.bits) - 1) +
+                                           0.5F));
         }
     }
     return losses;
@@ -146,21 +186,15 @@ WriteLosses encodeRow(const Image& image, int y, std::uint8_t* out) {
 
 } // namespace
 
-void writePng8(OutputFile& file, std::span<const std::uint8_t> bytes, int width, int height,
-               int channels, int threads) {
-    const std::size_t row_bytes = static_cast<std::size_t>(width) * channels;
-    writeRows(
-        file, width, height, channels, threads,
-        [&](std::size_t y, std::vector<std::uint8_t>&) { return bytes.data() + y * row_bytes; });
-}
-
-WriteLosses writePng(OutputFile& file, const Image& image, int threads) {
+WriteLosses writePng(OutputFile& file, const Image& image, const PngOptions& options, int threads) {
+    if (image.width < 1 || image.height < 1 || (image.channels != 3 && image.channels != 4) ||
+        (options.bits != 8 && options.bits != 16)) {
+        throw std::logic_error("writePng takes RGB or RGBA pixels and 8 or 16 bits");
+    }
     std::vector<WriteLosses> losses(static_cast<std::size_t>(image.height));
-    writeRows(file, image.width, image.height, image.channels, threads,
-              [&](std::size_t y, std::vector<std::uint8_t>& buffer) {
-                  const WriteLosses row = encodeRow(image, static_cast<int>(y), buffer.data());
-                  losses[y] = row;
-                  return static_cast<const std::uint8_t*>(buffer.data());
+    writeRows(file, image.width, image.height, image.channels, !options.encoded, options.bits,
+              threads, [&](std::size_t y, std::uint8_t* out) {
+                  losses[y] = encodeRow(image, static_cast<int>(y), options, out);
               });
     WriteLosses total;
     for (const WriteLosses& row : losses)

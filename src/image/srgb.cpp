@@ -38,7 +38,21 @@ struct RoundingTable {
             codes[b - kFirst] = static_cast<std::uint8_t>(code);
         }
     }
+
+    std::uint8_t code(float linear) const {
+        if (!(linear >= 0x1p-13F)) return 0;
+        if (linear >= 1) return 255;
+        std::size_t c = codes[(std::bit_cast<std::uint32_t>(linear) >> kShift) - kFirst];
+        while (linear >= starts[c + 1])
+            ++c;
+        return static_cast<std::uint8_t>(c);
+    }
 };
+
+const RoundingTable& roundingTable() {
+    static const RoundingTable table;
+    return table;
+}
 
 } // namespace
 
@@ -46,20 +60,18 @@ float srgbToLinear(float encoded) {
     return static_cast<float>(decode(encoded));
 }
 
-float linearToSrgb(float linear) {
-    const double v = linear;
-    return static_cast<float>(v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055);
+double linearToSrgb(double linear) {
+    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
 }
 
 std::uint8_t linearToSrgb8(float linear) {
-    static const RoundingTable table;
-    if (!(linear >= 0x1p-13F)) return 0;
-    if (linear >= 1) return 255;
-    const std::uint32_t bits = std::bit_cast<std::uint32_t>(linear) >> RoundingTable::kShift;
-    std::size_t code = table.codes[bits - RoundingTable::kFirst];
-    while (linear >= table.starts[code + 1])
-        ++code;
-    return static_cast<std::uint8_t>(code);
+    return roundingTable().code(linear);
+}
+
+void linearToSrgb8(const float* linear, std::size_t count, std::uint8_t* codes) {
+    const RoundingTable& table = roundingTable();
+    for (std::size_t i = 0; i < count; ++i)
+        codes[i] = table.code(linear[i]);
 }
 
 } // namespace ibl

@@ -88,7 +88,7 @@ WriteLosses writeImage(OutputSet& outputs, const std::string& path, const Image&
     OutputFile& file = outputs.add(path);
     if (format == "exr") return writeExr(file, image, options);
     if (isRadiance(format)) return writeRadiance(file, image, options.threads);
-    if (format == "png") return writePng(file, image, options.threads);
+    if (format == "png") return writePng(file, image, {}, options.threads);
     return writeOiio(file, image, format, options);
 }
 

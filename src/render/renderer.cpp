@@ -5,6 +5,7 @@
 #include "render/panorama_texture.h"
 #include "render/sample_pattern.h"
 #include "render/shader_program.h"
+#include "render/uniforms.h"
 
 #include <algorithm>
 #include <array>
@@ -28,24 +29,6 @@ constexpr int kTileWidth = 2048, kTileHeight = 2048;
 
 Error usage(const std::string& problem) {
     return {ExitCode::usage, "render: " + problem};
-}
-
-void setUniform(const Program& p, const char* name, const V3d& v) {
-    const V3f f(v);
-    glProgramUniform3f(p.id(), glGetUniformLocation(p.id(), name), f.x, f.y, f.z);
-}
-void setUniform(const Program& p, const char* name, const V2d& v) {
-    glProgramUniform2f(p.id(), glGetUniformLocation(p.id(), name), static_cast<float>(v.x),
-                       static_cast<float>(v.y));
-}
-void setUniform(const Program& p, const char* name, const V2i& v) {
-    glProgramUniform2i(p.id(), glGetUniformLocation(p.id(), name), v.x, v.y);
-}
-void setUniform(const Program& p, const char* name, double v) {
-    glProgramUniform1f(p.id(), glGetUniformLocation(p.id(), name), static_cast<float>(v));
-}
-void setUniform(const Program& p, const char* name, const M44f& m) {
-    glProgramUniformMatrix4fv(p.id(), glGetUniformLocation(p.id(), name), 1, GL_FALSE, m[0]);
 }
 
 } // namespace
@@ -85,12 +68,11 @@ struct Renderer::State {
     std::optional<MeshBuffers> mesh;
 
     VertexArray no_vertices;
-    Program surface, background, accumulate;
-    std::array<Program, 4> resolves; // made when first used: the S-curve or not, bytes or floats
+    Program surface, background, accumulate, resolve;
     // One tile: a sample, the sum of samples, and the picture as it is read.
-    Texture sample, sum, floats, bytes;
+    Texture sample, sum, mean;
     Renderbuffer depth;
-    Framebuffer to_sample, to_sum, to_floats, to_bytes;
+    Framebuffer to_sample, to_sum, to_mean;
 
     void uploadScene(const Scene& scene);
     void makePrograms(const Scene& scene);
@@ -102,9 +84,7 @@ struct Renderer::State {
     void drawSphere(const CameraRays& rays, const V2i& tile) const;
     void drawMesh(const CameraRays& rays, const V2d& jitter) const;
     void drawTile(const CameraRays& rays, const V2i& tile) const;
-    const Program& resolveProgram(const Display& display, bool as_bytes);
-    template <class T>
-    void drawFrame(const Camera& camera, const Display& display, T* pixels);
+    void drawFrame(const Camera& camera, Image& frame);
 };
 
 void Renderer::State::uploadScene(const Scene& scene) {
@@ -134,7 +114,7 @@ void Renderer::State::makePrograms(const Scene& scene) {
         definitions.push_back(d);
     const auto& folder = options.shader_folder;
     const auto program = [&](std::string_view vertex, std::vector<std::string_view> fragment) {
-        return makeProgram({vertex, std::move(fragment), definitions}, folder);
+        return makeProgram({vertex, std::move(fragment), definitions, {}}, folder);
     };
     surface =
         program(mesh ? "mesh.vert" : "fullscreen.vert",
@@ -148,7 +128,12 @@ void Renderer::State::makePrograms(const Scene& scene) {
     } else if (image) {
         background = program("fullscreen.vert", {"background_image.frag"});
     }
+    resolve = program("fullscreen.vert", {"resolve.frag"});
     if (options.samples > 1) accumulate = program("fullscreen.vert", {"accumulate.frag"});
+    // Each sample goes into the sum by the weight 2^-k, where 2^k >= samples.
+    const double weight = std::exp2(-std::ceil(std::log2(options.samples)));
+    if (accumulate) setUniform(accumulate, "weight", weight);
+    setUniform(resolve, "sum_weight", weight * options.samples);
 }
 
 V2i Renderer::State::tileSize() const {
@@ -164,6 +149,8 @@ void Renderer::State::makeTargets() {
         sum = makeTexture(GL_TEXTURE_2D, GL_RGBA32F, size.x, size.y);
         to_sum = makeFramebuffer(sum);
     }
+    mean = makeTexture(GL_TEXTURE_2D, GL_RGBA32F, size.x, size.y);
+    to_mean = makeFramebuffer(mean);
     GLuint array = 0;
     glCreateVertexArrays(1, &array);
     no_vertices = VertexArray(array);
@@ -249,49 +236,9 @@ void Renderer::State::drawTile(const CameraRays& rays, const V2i& tile) const {
     }
 }
 
-const Program& Renderer::State::resolveProgram(const Display& display, bool as_bytes) {
-    const double exposure = std::exp2(display.exposure);
-    if (!(exposure > 0 && exposure < std::numeric_limits<float>::max())) {
-        throw usage("the exposure is beyond what floats hold; stay within 120 stops");
-    }
-    const bool scurve = display.tone_map == ToneMap::scurve;
-    if (scurve && !(display.scurve_n > 0 && display.scurve_sigma > 0)) {
-        throw usage("the S-curve's parameters are not positive; give positive ones");
-    }
-    const auto flag = [](const char* name, bool on) {
-        return std::string(name) + (on ? " 1" : " 0");
-    };
-    Program& program = resolves[(scurve ? 2 : 0) + (as_bytes ? 1 : 0)];
-    if (!program) {
-        program = makeProgram(
-            {"fullscreen.vert",
-             {"resolve.frag"},
-             {flag("STRAIGHT", !opaque), flag("SCURVE", scurve), flag("BYTES", as_bytes)}},
-            options.shader_folder);
-    }
-    // Each sample has gone into the sum by the weight 2^-k, where 2^k >= samples.
-    const double weight = std::exp2(-std::ceil(std::log2(options.samples)));
-    if (accumulate) setUniform(accumulate, "weight", weight);
-    setUniform(program, "sum_weight", weight * options.samples);
-    setUniform(program, "exposure", exposure);
-    setUniform(program, "scurve_n", display.scurve_n);
-    setUniform(program, "scurve_sigma", display.scurve_sigma);
-    return program;
-}
-
-template <class T>
-void Renderer::State::drawFrame(const Camera& camera, const Display& display, T* pixels) {
-    constexpr bool as_bytes = sizeof(T) == 1;
+void Renderer::State::drawFrame(const Camera& camera, Image& frame) {
     const CameraRays rays = cameraRays(camera, options.width, options.height);
-    const Program& resolve = resolveProgram(display, as_bytes);
     const V2i size = tileSize();
-    // Bytes are made on the device: reading them from a float target costs thirty times as much.
-    Texture& target = as_bytes ? bytes : floats;
-    Framebuffer& to_target = as_bytes ? to_bytes : to_floats;
-    if (!target) {
-        target = makeTexture(GL_TEXTURE_2D, as_bytes ? GL_RGBA8 : GL_RGBA32F, size.x, size.y);
-        to_target = makeFramebuffer(target);
-    }
     glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
     glFrontFace(GL_CW);     // counter-clockwise, in a frame whose y is down
     glDepthFunc(GL_LEQUAL); // the background stands at the far plane itself
@@ -300,18 +247,16 @@ void Renderer::State::drawFrame(const Camera& camera, const Display& display, T*
     glBindTextureUnit(2, image.id());
     glPixelStorei(GL_PACK_ROW_LENGTH, options.width);
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
-    const std::size_t channels = opaque ? 3 : 4;
     for (int y = 0; y < options.height; y += size.y) {
         for (int x = 0; x < options.width; x += size.x) {
             drawTile(rays, {x, y});
-            glBindFramebuffer(GL_FRAMEBUFFER, to_target.id());
+            glBindFramebuffer(GL_FRAMEBUFFER, to_mean.id());
             glViewport(0, 0, size.x, size.y);
             glBindTextureUnit(0, accumulate ? sum.id() : sample.id());
             drawFullscreen(resolve);
-            const auto first = static_cast<std::size_t>(y) * options.width + x;
             glReadPixels(0, 0, std::min(size.x, options.width - x),
-                         std::min(size.y, options.height - y), opaque ? GL_RGB : GL_RGBA,
-                         as_bytes ? GL_UNSIGNED_BYTE : GL_FLOAT, pixels + first * channels);
+                         std::min(size.y, options.height - y), opaque ? GL_RGB : GL_RGBA, GL_FLOAT,
+                         frame.at(x, y));
         }
     }
     checkGl("drawing the picture");
@@ -337,18 +282,10 @@ Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
-Image Renderer::renderLinear(const Camera& camera, const Display& display) {
-    Image image(state_->options.width, state_->options.height, state_->opaque ? 3 : 4);
-    state_->drawFrame(camera, display, image.pixels.data());
-    return image;
-}
-
-ByteImage Renderer::renderBytes(const Camera& camera, const Display& display) {
-    const FrameOptions& options = state_->options;
-    ByteImage image{options.width, options.height, state_->opaque ? 3 : 4, {}};
-    image.pixels.resize(static_cast<std::size_t>(options.width) * options.height * image.channels);
-    state_->drawFrame(camera, display, image.pixels.data());
-    return image;
+Image Renderer::render(const Camera& camera) {
+    Image frame(state_->options.width, state_->options.height, state_->opaque ? 3 : 4);
+    state_->drawFrame(camera, frame);
+    return frame;
 }
 
 } // namespace ibl

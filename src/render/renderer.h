@@ -7,14 +7,12 @@
 #include "render/egl_context.h"
 #include "render/mesh.h"
 
-#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string_view>
 #include <variant>
-#include <vector>
 
 namespace ibl {
 
@@ -72,26 +70,6 @@ struct FrameOptions {
     std::optional<std::filesystem::path> shader_folder; ///< replaces built-in shaders, file by file
 };
 
-enum class ToneMap { none, scurve };
-
-/// From radiance to display, on the averaged pixels: c' = 2^exposure c, then the tone map.
-/// The S-curve is c'^n / (c'^n + sigma^n) for each channel (Naka and Rushton 1966), negative values
-/// 0. With n = 1.1 and sigma = 0.72 middle grey, 0.18, stays where it is and 1 becomes 0.59.
-struct Display {
-    double exposure = 0; ///< stops
-    ToneMap tone_map = ToneMap::none;
-    double scurve_n = 1.1;
-    double scurve_sigma = 0.72;
-};
-
-/// 8-bit sRGB pixels. With 4 channels alpha is straight, as PNG has it.
-struct ByteImage {
-    int width = 0;
-    int height = 0;
-    int channels = 3;
-    std::vector<std::uint8_t> pixels; ///< row 0 at the top
-};
-
 /// A scene on the graphics device, ready to be drawn. The context must be current and outlive it.
 ///
 /// Throws Error: usage for frames the device cannot draw (a side over its limit, samples < 1), for
@@ -104,13 +82,8 @@ public:
     Renderer(Renderer&&) noexcept;
     Renderer& operator=(Renderer&&) noexcept;
 
-    /// Scene-linear pixels after exposure and tone map: RGBA, premultiplied, when the scene has no
-    /// background, otherwise RGB.
-    Image renderLinear(const Camera& camera, const Display& display);
-
-    /// The same picture with the sRGB transfer function (IEC 61966-2-1), clipped to [0, 1] and
-    /// rounded to 8 bits on the device.
-    ByteImage renderBytes(const Camera& camera, const Display& display);
+    /// Scene-linear pixels: RGBA, premultiplied, when the scene has no background, otherwise RGB.
+    Image render(const Camera& camera);
 
 private:
     struct State;

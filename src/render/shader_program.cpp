@@ -89,6 +89,7 @@ ShaderStage compile(GLenum stage, const std::vector<SourceFile>& files,
 
 Program makeProgram(const ProgramParts& parts, const std::optional<std::filesystem::path>& folder) {
     std::vector<SourceFile> fragment_files;
+    if (!parts.source.empty()) fragment_files.push_back({"generated source", parts.source});
     for (const std::string_view name : parts.fragment) {
         fragment_files.push_back(readShader(name, folder));
     }

@@ -9,8 +9,8 @@
 namespace ibl {
 namespace {
 
-const std::vector<std::string> kCommands = {"convert", "diffuse", "specular", "brdf",
-                                            "lights",  "render",  "bake",     "info"};
+const std::vector<std::string> kCommands = {"convert", "diffuse", "specular", "brdf", "lights",
+                                            "render",  "tonemap", "bake",     "info"};
 
 std::set<std::string> matches(const std::string& text, const std::string& pattern) {
     const std::regex expression(pattern);

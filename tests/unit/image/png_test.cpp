@@ -37,33 +37,82 @@ TEST(Srgb, InvertsAndClamps) {
     EXPECT_EQ(linearToSrgb8(INFINITY), 255);
 }
 
-TEST_F(Png, BytesRoundTripThroughAnOutsideReader) {
-    for (const int channels : {3, 4}) {
+/// The codes in a PNG file of greys or colours, by libpng.
+std::vector<int> codesOf(const std::string& name, int bits) {
+    std::vector<int> codes;
+    for (const float v : readImage(name).image.pixels) {
+        const double c = v;
+        const double encoded = c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055;
+        codes.push_back(static_cast<int>(std::lround(encoded * ((1 << bits) - 1))));
+    }
+    return codes;
+}
+
+TEST_F(Png, CodesOf8And16BitsRoundTrip) {
+    for (const int bits : {8, 16}) {
         for (const int width : {1, 3, 500}) {
             const int height = width == 500 ? 700 : 2; // more than one strip
-            std::vector<std::uint8_t> bytes(static_cast<std::size_t>(width) * height * channels);
+            const int largest = (1 << bits) - 1;
+            Image image(width, height);
+            std::vector<int> codes;
             std::uint32_t state = 1;
-            for (auto& b : bytes)
-                b = static_cast<std::uint8_t>((state = state * 1664525 + 1013904223) >> 24);
+            for (float& v : image.pixels) {
+                codes.push_back(static_cast<int>((state = state * 1664525 + 1013904223) >> 16) &
+                                largest);
+                v = static_cast<float>(codes.back()) / static_cast<float>(largest);
+            }
             OutputSet outputs;
-            writePng8(outputs.add(path("a.png")), bytes, width, height, channels);
+            writePng(outputs.add(path("a.png")), image, {bits, false, true});
             outputs.commit();
-            run("oiiotool -i:unpremult=1 " + path("a.png") + " -d uint8 -o " + path("a.ppm"));
-            const ImageFile file = readImage(path("a.png"), {"", true});
-            ASSERT_EQ(file.image.channels, channels);
-            for (std::size_t i = 0; i < bytes.size(); i += static_cast<std::size_t>(channels)) {
-                const float alpha = channels == 4 ? static_cast<float>(bytes[i + 3]) / 255 : 1;
-                for (std::size_t c = 0; c < 3; ++c) {
-                    ASSERT_NEAR(file.image.pixels[i + c], srgbDecoded(bytes[i + c] / 255.0) * alpha,
-                                1e-6);
-                }
-            }
-            if (channels == 3) {
-                const std::string ppm = readBytes(path("a.ppm"));
-                EXPECT_EQ(ppm.substr(ppm.size() - bytes.size()),
-                          std::string(bytes.begin(), bytes.end()));
-            }
+            EXPECT_TRUE(codesOf(path("a.png"), bits) == codes) << bits << " " << width;
+            if (bits == 16) continue;
+            run("oiiotool " + path("a.png") + " -d uint8 -o " + path("a.ppm"));
+            const std::string ppm = readBytes(path("a.ppm"));
+            EXPECT_TRUE(
+                std::equal(codes.begin(), codes.end(), ppm.end() - codes.size(),
+                           [](int code, char c) { return code == static_cast<std::uint8_t>(c); }));
         }
+    }
+}
+
+// The transfer function of the standard, in double, rounded: no code is off, whatever the bits.
+TEST_F(Png, SrgbIsExactToACode) {
+    Image image(4096, 3);
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+        image.pixels[i] = static_cast<float>(std::pow(static_cast<double>(i) / 36864, 3));
+    }
+    for (const int bits : {8, 16}) {
+        OutputSet outputs;
+        writePng(outputs.add(path("a.png")), image, {bits, false, false});
+        outputs.commit();
+        const std::vector<int> codes = codesOf(path("a.png"), bits);
+        for (std::size_t i = 0; i < codes.size(); ++i) {
+            const double c = image.pixels[i];
+            const double encoded =
+                c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055;
+            ASSERT_EQ(codes[i], static_cast<int>(std::floor(encoded * ((1 << bits) - 1) + 0.5)))
+                << bits << " bits of " << c;
+        }
+    }
+}
+
+TEST_F(Png, DitheringKeepsTheMeanBetweenCodes) {
+    for (const double code : {0.25, 17.5, 200.125}) {
+        Image image(16, 16);
+        for (float& v : image.pixels)
+            v = static_cast<float>(code / 255);
+        OutputSet outputs;
+        writePng(outputs.add(path("a.png")), image, {8, true, true});
+        outputs.commit();
+        run("oiiotool " + path("a.png") + " -d uint8 -o " + path("a.ppm"));
+        const std::string ppm = readBytes(path("a.ppm"));
+        double sum = 0;
+        for (std::size_t i = ppm.size() - 768; i < ppm.size(); ++i) {
+            const int got = static_cast<std::uint8_t>(ppm[i]);
+            EXPECT_LE(std::abs(got - code), 1);
+            sum += got;
+        }
+        EXPECT_NEAR(sum / 768, code, 0.003);
     }
 }
 

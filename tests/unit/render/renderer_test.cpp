@@ -17,23 +17,11 @@ namespace {
 
 Error errorOf(const Scene& scene, const FrameOptions& options) {
     try {
-        Renderer(softwareContext(), scene, options).renderLinear({}, {});
+        Renderer(softwareContext(), scene, options).render({});
     } catch (const Error& error) {
         return error;
     }
     return {ExitCode::done, ""};
-}
-
-// One pixel of a uniform background through the display chain.
-V3d displayed(const V3f& color, const Display& display) {
-    Scene scene;
-    const Panorama map = constantProbe(0);
-    scene.diffuse = &map;
-    scene.material.shader = Shader::diffuse;
-    scene.background = color;
-    const Camera away{{0, 0, 4}, {0, 0, 8}, {0, 1, 0}, 40};
-    return pixel(Renderer(softwareContext(), scene, {1, 1, 3, {}}).renderLinear(away, display), 0,
-                 0);
 }
 
 TEST(EglContext, NamesItsDevice) {
@@ -60,69 +48,14 @@ TEST(EglContext, MachinesWithoutADriverAreToldWhatToInstall) {
                 "^EGL: .*libegl1 libgl1-mesa-dri libopengl0");
 }
 
-TEST(Display, ExposureIsInStops) {
-    EXPECT_EQ(displayed({1, 2, -3}, {}), V3d(1, 2, -3));
-    EXPECT_EQ(displayed({1, 2, -3}, {2, ToneMap::none, 1, 1}), V3d(4, 8, -12));
-    EXPECT_EQ(displayed({1, 2, -3}, {-1, ToneMap::none, 1, 1}), V3d(0.5, 1, -1.5));
-}
-
-TEST(Display, ScurveIsItsClosedForm) {
-    for (const double c : {1e-6, 0.18, 1.0, 50.0, 1e9}) {
-        for (const double n : {0.5, 1.1, 3.0}) {
-            const double sigma = 0.72;
-            const double expected = 1 / (1 + std::pow(sigma / (2 * c), n));
-            const V3d got = displayed(V3f(static_cast<float>(c)), {1, ToneMap::scurve, n, sigma});
-            EXPECT_NEAR(got.x / expected, 1, 5e-5) << c << " " << n;
-        }
-    }
-    EXPECT_EQ(displayed({0, -1, -1e30f}, {0, ToneMap::scurve, 1.1, 0.72}), V3d(0));
-    const double kept = displayed(V3f(0.18f), {0, ToneMap::scurve}).x;
-    EXPECT_NEAR(kept, 0.18, 0.002); // the defaults keep middle grey
-}
-
-TEST(Display, LargeRadianceStaysFinite) {
-    const float largest = std::numeric_limits<float>::max();
-    EXPECT_EQ(displayed(V3f(largest), {}).x, largest);
-    EXPECT_EQ(displayed(V3f(largest), {8, ToneMap::none, 1, 1}).x, largest);
-    EXPECT_EQ(displayed(V3f(-largest), {8, ToneMap::none, 1, 1}).x, -largest);
-    EXPECT_EQ(displayed(V3f(largest), {8, ToneMap::scurve, 1.1, 0.72}).x, 1);
-}
-
-TEST(Display, ParametersOutOfRangeAreRefused) {
-    const double nan = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_THROW(displayed(V3f(1), {400, ToneMap::none, 1, 1}), Error);
-    EXPECT_THROW(displayed(V3f(1), {nan, ToneMap::none, 1, 1}), Error);
-    EXPECT_THROW(displayed(V3f(1), {0, ToneMap::scurve, 0, 1}), Error);
-    EXPECT_THROW(displayed(V3f(1), {0, ToneMap::scurve, 1, nan}), Error);
-}
-
-TEST(Display, BytesAreTheRoundedSrgbOfTheLinearPicture) {
-    const Panorama probe = noiseProbe(Layout::latlong, 32, 16);
-    Scene scene;
-    scene.probe = &probe;
-    Renderer renderer(softwareContext(), scene, {37, 23, 4, {}});
-    const Display display{-0.5, ToneMap::none, 1, 1};
-    const Image linear = renderer.renderLinear({}, display);
-    const ByteImage bytes = renderer.renderBytes({}, display);
-    ASSERT_EQ(bytes.channels, 3);
-    ASSERT_EQ(bytes.pixels.size(), linear.pixels.size());
-    for (std::size_t i = 0; i < linear.pixels.size(); ++i) {
-        const double c = std::min(1.0, static_cast<double>(linear.pixels[i]));
-        const double encoded = c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055;
-        ASSERT_NEAR(bytes.pixels[i], 255 * encoded, 0.502);
-    }
-}
-
 TEST(Background, NoneGivesPremultipliedAlpha) {
     const Panorama furnace = constantProbe(2);
     Scene scene;
     scene.probe = &furnace;
     scene.background = NoBackground{};
     Renderer renderer(softwareContext(), scene, {32, 32, 16, {}});
-    const Image linear = renderer.renderLinear({}, {});
-    const ByteImage bytes = renderer.renderBytes({}, {});
+    const Image linear = renderer.render({});
     ASSERT_EQ(linear.channels, 4);
-    ASSERT_EQ(bytes.channels, 4);
     EXPECT_EQ(linear.at(16, 16)[3], 1);
     EXPECT_EQ(linear.at(0, 0)[3], 0);
     int partial = 0;
@@ -132,9 +65,6 @@ TEST(Background, NoneGivesPremultipliedAlpha) {
         EXPECT_FLOAT_EQ(p[0], 2 * p[3]);
         partial += p[3] > 0 && p[3] < 1;
         coverage += p[3];
-        // Bytes are straight: the colour does not fade with alpha.
-        EXPECT_EQ(bytes.pixels[4 * i], p[3] > 0 ? 255 : 0);
-        EXPECT_NEAR(bytes.pixels[4 * i + 3], 255 * p[3], 0.51);
     }
     EXPECT_GT(partial, 20);
     // The disc has the tangent 1/sqrt(15) of the frame's half, tan 20 degrees.
@@ -149,7 +79,7 @@ TEST(Background, ImageIsSeenPixelForPixel) {
     scene.background = noiseProbe(Layout::latlong, 31, 17).image;
     const Image& plate = std::get<ImageBackground>(scene.background);
     const Camera away{{0, 0, 4}, {0, 0, 8}, {0, 1, 0}, 40};
-    const Image frame = Renderer(softwareContext(), scene, {31, 17, 4, {}}).renderLinear(away, {});
+    const Image frame = Renderer(softwareContext(), scene, {31, 17, 4, {}}).render(away);
     for (std::size_t i = 0; i < frame.pixels.size(); ++i) {
         ASSERT_EQ(frame.pixels[i], plate.pixels[i]);
     }
@@ -183,10 +113,10 @@ TEST(Meshes, TheNearerSurfaceIsSeenWhateverTheOrder) {
                         scene.object.mesh->indices.end());
         scene.background = ColorBackground(9, 9, 9);
         Renderer renderer(softwareContext(), scene, {33, 33, 1, {}});
-        const Image front = renderer.renderLinear({{0, 0, 5}, {0, 0, 0}, {0, 1, 0}, 40}, {});
+        const Image front = renderer.render({{0, 0, 5}, {0, 0, 0}, {0, 1, 0}, 40});
         // The nearer quad is seen from its back: its normal is turned to the eye, so it is white.
         EXPECT_EQ(pixel(front, 16, 16), V3d(1));
-        const Image back = renderer.renderLinear({{0, 0, -5}, {0, 0, 0}, {0, 1, 0}, 20}, {});
+        const Image back = renderer.render({{0, 0, -5}, {0, 0, 0}, {0, 1, 0}, 20});
         EXPECT_EQ(pixel(back, 16, 16), V3d(0)); // turned to -Z
     }
 }
@@ -204,8 +134,7 @@ TEST(Meshes, EdgesAreCoveredSampleForSample) {
     scene.background = NoBackground{};
     // A slanting edge, since upright ones cover as many samples of the mirrored pattern.
     const Camera camera{{0.3, 0, 4}, {0, 0, 0}, {0.6, 1, 0}, 40};
-    const Image frame =
-        Renderer(softwareContext(), scene, {30, 20, 3, {}}).renderLinear(camera, {});
+    const Image frame = Renderer(softwareContext(), scene, {30, 20, 3, {}}).render(camera);
     const CameraRays rays = cameraRays(camera, 30, 20);
     int partial = 0, wrong = 0;
     for (int y = 0; y < 20; ++y) {
@@ -261,7 +190,7 @@ TEST(Renderer, SameBytesOnEveryRun) {
     scene.probe = &probe;
     scene.object = *builtinObject("teapot");
     const auto draw = [&] {
-        return Renderer(softwareContext(), scene, {64, 48, 7, {}}).renderLinear({}, {}).pixels;
+        return Renderer(softwareContext(), scene, {64, 48, 7, {}}).render({}).pixels;
     };
     EXPECT_TRUE(draw() == draw());
 }
@@ -281,7 +210,7 @@ TEST_F(ShaderFolder, FilesReplaceTheEmbeddedOnes) {
     const Panorama probe = constantProbe(1);
     Scene scene;
     scene.probe = &probe;
-    const Image frame = Renderer(softwareContext(), scene, {9, 9, 1, folder_}).renderLinear({}, {});
+    const Image frame = Renderer(softwareContext(), scene, {9, 9, 1, folder_}).render({});
     EXPECT_EQ(pixel(frame, 4, 4), V3d(7));
     EXPECT_EQ(pixel(frame, 0, 0), V3d(1));
 }

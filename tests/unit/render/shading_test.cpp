@@ -48,8 +48,7 @@ double frameError(const Image& frame, const Camera& camera, int samples, bool sk
 }
 
 Image drawSphere(const Scene& scene, const Camera& camera, int width, int height, int samples) {
-    return Renderer(softwareContext(), scene, {width, height, samples, {}})
-        .renderLinear(camera, {});
+    return Renderer(softwareContext(), scene, {width, height, samples, {}}).render(camera);
 }
 
 V3d mirrorScene(const Panorama& probe, const V3d& eye, const V3d& ray) {
@@ -71,7 +70,7 @@ TEST(Shading, MirrorSphereAndBackgroundAreTheProbeLookedUp) {
         Renderer renderer(softwareContext(), scene, {64, 48, 1, {}});
         for (const Camera& camera : kCameras) {
             const double error =
-                frameError(renderer.renderLinear(camera, {}), camera, 1, true,
+                frameError(renderer.render(camera), camera, 1, true,
                            [&](const V3d& e, const V3d& d) { return mirrorScene(probe, e, d); });
             EXPECT_LT(error, 1e-4)
                 << layoutName(probe.layout) << " " << probe.image.width << " from " << camera.eye;

@@ -1,0 +1,291 @@
+#include "cli/display_options.h"
+
+#include "core/error.h"
+#include "render/exposure.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+
+namespace ibl {
+namespace {
+
+constexpr double kStandardKey = 0.18; // middle grey
+constexpr double kStandardDelta = 1e-5;
+
+bool isPng(const ImageOutputOptions& output) {
+    std::string format = output.format;
+    if (format.empty()) format = std::filesystem::path(output.output).extension().string();
+    if (format.starts_with('.')) format.erase(0, 1);
+    for (char& c : format)
+        c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return format == "png";
+}
+
+void bindExposure(CLI::App& app, DisplayArguments& a) {
+    app.add_option_function<std::string>(
+           "--exposure",
+           [&a](const std::string& text) {
+               a.auto_exposure = text == "auto";
+               if (a.auto_exposure) return;
+               const char* end = text.data() + text.size();
+               const auto [last, problem] = std::from_chars(text.data(), end, a.exposure);
+               if (problem != std::errc() || last != end || !(std::abs(a.exposure) <= 64)) {
+                   throw CLI::ValidationError("--exposure", "'" + text +
+                                                                "' is neither auto nor a number "
+                                                                "of stops from -64 to 64");
+               }
+           },
+           "Stops: radiance is multiplied by 2^EV; auto: so that the log-average becomes the key "
+           "(default 0)")
+        ->type_name("EV|auto")
+        ->group("Exposure");
+    app.add_option("--key", a.key,
+                   "What the log-average becomes: 0.045 of dark to 0.72 of bright scenes (default "
+                   "0.18)")
+        ->check(CLI::Range(0.045, 0.72))
+        ->type_name("K")
+        ->group("Exposure");
+    app.add_option("--delta", a.delta,
+                   "Added to luminance ahead of its logarithm, for auto (default 1e-5)")
+        ->check(CLI::Range(1e-30, 1e30))
+        ->type_name("D")
+        ->group("Exposure");
+    CLI::Option* adapt = app.add_option("--adapt", a.adapt,
+                                        "Frames in which half of what the exposure lacks is made "
+                                        "up for, with auto")
+                             ->check(CLI::Range(0.01, 1e6))
+                             ->type_name("FRAMES")
+                             ->group("Exposure");
+    CLI::Option* state = app.add_option("--adapt-state", a.adapt_state,
+                                        "JSON file that hands the adaptation on to the next frame; "
+                                        "made when there is none")
+                             ->needs(adapt)
+                             ->type_name("FILE")
+                             ->group("Exposure");
+    adapt->needs(state);
+}
+
+void bindToneMap(CLI::App& app, DisplayArguments& a) {
+    std::vector<std::string> names;
+    std::string help;
+    for (const ToneMapInfo& info : toneMapTable()) {
+        names.emplace_back(info.name);
+        help +=
+            (help.empty() ? "" : "; ") + std::string(info.name) + ": " + std::string(info.summary);
+    }
+    app.add_option_function<std::string>(
+           "--tonemap", [&a](const std::string& n) { a.chain.tone_map = *toneMapFromName(n); },
+           help + " (default none)")
+        ->check(CLI::IsMember(names))
+        ->type_name("NAME")
+        ->group("Tone map");
+    app.add_option_function<std::string>(
+           "--per",
+           [&a](const std::string& n) { a.per = n == "channel" ? Per::channel : Per::luminance; },
+           "Apply the curve per channel or per luminance (default luminance for reinhard, channel "
+           "for exponential, scurve and filmic)")
+        ->check(CLI::IsMember({"channel", "luminance"}))
+        ->type_name("WHAT")
+        ->group("Tone map");
+    for (const ToneMapInfo& info : toneMapTable()) {
+        for (const ToneParameter& p : info.parameters) {
+            const std::string name(p.name);
+            if (app.get_option_no_throw("--" + name)) continue; // of an earlier map, too
+            std::string help_text(p.summary);
+            if (help_text.find("default") == std::string::npos) {
+                char standard[32];
+                std::snprintf(standard, sizeof standard, " (default %g)", p.standard);
+                help_text += standard;
+            }
+            app.add_option_function<double>(
+                   "--" + name, [&a, name](double value) { a.tone_parameters[name] = value; },
+                   help_text)
+                ->check(CLI::Range(p.least, p.most))
+                ->check(p.whole ? CLI::Validator(CLI::TypeValidator<int>()) : CLI::Validator())
+                ->type_name(p.whole ? "N" : "X")
+                ->group("Tone map");
+        }
+    }
+    const auto text = [&](const char* name, std::string& value, const char* help_text) {
+        app.add_option(name, value, help_text)->type_name("NAME")->group("Tone map");
+    };
+    text("--display", a.view.display, "Of display: which display (default: the config's)");
+    text("--view", a.view.view, "Of display: which of its views (default: the display's)");
+    text("--ocio-space", a.view.space,
+         "Of display: the picture's colour space (default: the role scene_linear)");
+    app.add_option("--ocio-config", a.view.config,
+                   "Of display: OpenColorIO config (default: $OCIO; without it OpenColorIO's ACES "
+                   "output transform)")
+        ->type_name("FILE")
+        ->group("Tone map");
+}
+
+void bindEffects(CLI::App& app, DisplayArguments& a) {
+    DisplayOptions& o = a.chain;
+    const auto number = [&](const char* name, double& value, double least, double most,
+                            const char* type, const char* help) {
+        return app.add_option(name, value, help)
+            ->check(CLI::Range(least, most))
+            ->type_name(type)
+            ->capture_default_str()
+            ->group("Effects");
+    };
+    CLI::Option* bloom =
+        number("--bloom", o.bloom, 0, 1, "W", "Share of bright light that is spread around");
+    number("--bloom-radius", o.bloom_radius, 1e-3, 1, "R",
+           "Deviation of its widest part, over the picture's height")
+        ->needs(bloom);
+    CLI::Option* streaks =
+        number("--streaks", o.streaks, 0, 1, "W", "Share of bright light that goes into rays");
+    app.add_option("--streak-count", o.streak_count, "Number of rays")
+        ->check(CLI::Range(1, 64))
+        ->type_name("N")
+        ->capture_default_str()
+        ->needs(streaks)
+        ->group("Effects");
+    number("--streak-length", o.streak_length, 0.01, 2, "L",
+           "Their length over the picture's height")
+        ->needs(streaks);
+    number("--streak-attenuation", o.streak_attenuation, 1e-4, 0.9, "A",
+           "What is left of a ray at its length")
+        ->needs(streaks);
+    number("--streak-angle", o.streak_angle, -360, 360, "DEG",
+           "Direction of the first, counter-clockwise from the right")
+        ->needs(streaks);
+    number("--glare", o.glare, 0, 1, "W", "Share of all light that veils the whole picture");
+    number("--threshold", o.threshold, 0, 1e30, "T",
+           "Exposed luminance from which light is bright, for bloom and streaks");
+    number("--vignette", o.vignette, 0, 1, "W", "Weight of the fall-off towards the corners");
+}
+
+} // namespace
+
+void bindDisplay(CLI::App& app, DisplayArguments& arguments) {
+    bindExposure(app, arguments);
+    bindToneMap(app, arguments);
+    bindEffects(app, arguments);
+    app.add_option("--bits", arguments.bits, "Bits a channel of PNG files: 8 (default) or 16")
+        ->check(CLI::IsMember({8, 16}))
+        ->type_name("N")
+        ->group("Output");
+    app.add_flag("--dither", arguments.dither,
+                 "Mix neighbouring codes of PNG files by a fixed pattern, against bands")
+        ->group("Output");
+}
+
+double deltaOf(const DisplayArguments& arguments) {
+    return arguments.delta.value_or(kStandardDelta);
+}
+
+void requireFitting(const DisplayArguments& a, const ImageOutputOptions& output) {
+    const auto refuse = [](bool idle, const std::string& option, const std::string& why) {
+        if (idle) throw Error(ExitCode::usage, option + " " + why + "; leave it out");
+    };
+    const ToneMapInfo& info = toneMapInfo(a.chain.tone_map);
+    const std::string name(info.name);
+    refuse(a.key && !a.auto_exposure && info.map != ToneMap::reinhardLocal, "--key",
+           "is of --exposure auto and of --tonemap reinhard-local");
+    refuse(a.delta && !a.auto_exposure, "--delta", "is of --exposure auto");
+    refuse(!a.adapt_state.empty() && !a.auto_exposure, "--adapt", "is of --exposure auto");
+    refuse(a.adapt_state == "-", "--adapt-state", "does not go to standard output");
+    refuse(a.per && info.curve.empty(), "--per", "does nothing for the tone map " + name);
+    for (const auto& [given, value] : a.tone_parameters) {
+        const bool fits = std::any_of(info.parameters.begin(), info.parameters.end(),
+                                      [&](const ToneParameter& p) { return p.name == given; });
+        refuse(!fits, "--" + given, "does nothing for the tone map " + name);
+    }
+    const DisplayView& v = a.view;
+    refuse((info.map != ToneMap::display) &&
+               !(v.config.empty() && v.display.empty() && v.view.empty() && v.space.empty()),
+           "--display, --view, --ocio-space or --ocio-config", "is of --tonemap display");
+    refuse(a.chain.bloom + a.chain.streaks == 0 && a.chain.threshold != DisplayOptions().threshold,
+           "--threshold", "is of --bloom and --streaks");
+    const bool png = isPng(output);
+    refuse((a.bits || a.dither) && !png, "--bits or --dither", "is of PNG files");
+    if (info.map == ToneMap::display && !png) {
+        throw Error(ExitCode::usage,
+                    "--tonemap display: makes display-encoded values; write a PNG");
+    }
+}
+
+namespace {
+
+/// The log-average that the state file hands on, unless there is no file yet.
+std::optional<double> readAdaptation(const std::string& path) {
+    std::error_code ignored;
+    if (!std::filesystem::exists(path, ignored)) return std::nullopt;
+    std::ifstream file(path);
+    const auto state = nlohmann::json::parse(file, nullptr, false);
+    if (state.is_object() && state.contains("log_average") && state["log_average"].is_number()) {
+        const double value = state["log_average"];
+        if (value > 0 && std::isfinite(value)) return value;
+    }
+    throw inputError(path, "is no state of adaptation; delete it to begin anew");
+}
+
+/// Stops that the picture is exposed by. Notes in the report how they came about.
+double exposureOf(Session& session, const DisplayArguments& a, const Image& picture,
+                  std::optional<double> known) {
+    if (!a.auto_exposure) return a.exposure;
+    double average = known ? *known : session.stage("expose", [&] {
+        return takePictureCensus(picture, deltaOf(a), session.threads()).log_average;
+    });
+    session.results()["log_average"] = average;
+    if (!a.adapt_state.empty()) {
+        const std::optional<double> before = readAdaptation(a.adapt_state);
+        if (before) average = adapted(*before, average, a.adapt);
+        session.results()["adapted_log_average"] = average;
+        nlohmann::ordered_json state;
+        state["log_average"] = average;
+        session.writeText(a.adapt_state, state.dump(2) + "\n");
+    }
+    return std::log2(a.key.value_or(kStandardKey) / average);
+}
+
+DisplayOptions chainOf(const DisplayArguments& a) {
+    DisplayOptions chain = a.chain;
+    const ToneMapInfo& info = toneMapInfo(chain.tone_map);
+    chain.per = a.per.value_or(info.per);
+    chain.key = a.key.value_or(kStandardKey);
+    chain.parameters = standardParameters(chain.tone_map);
+    for (std::size_t i = 0; i < info.parameters.size(); ++i) {
+        const auto given = a.tone_parameters.find(std::string(info.parameters[i].name));
+        if (given != a.tone_parameters.end()) chain.parameters[i] = given->second;
+    }
+    return chain;
+}
+
+} // namespace
+
+void showPicture(Session& session, const EglContext& context, const DisplayArguments& arguments,
+                 Image picture, std::optional<double> log_average, const ImageOutputOptions& output,
+                 const WriteOptions& how, std::optional<std::filesystem::path> shader_folder) {
+    const double exposure = exposureOf(session, arguments, picture, log_average);
+    session.results()["exposure"] = exposure;
+    DisplayOptions options = chainOf(arguments);
+    if (options.tone_map == ToneMap::display) {
+        if (!arguments.view.config.empty()) session.addInput(arguments.view.config);
+        options.transform =
+            session.stage("ocio", [&] { return loadDisplayTransform(arguments.view); });
+    }
+    session.stage("display", [&] {
+        DisplayChain chain(context, options, std::move(shader_folder));
+        chain.apply(picture, exposure, session.threads());
+    });
+    session.stage("write", [&] {
+        if (!isPng(output)) {
+            session.write(output.output, picture, how);
+            return;
+        }
+        const PngOptions png{arguments.bits.value_or(8), arguments.dither,
+                             options.tone_map == ToneMap::display};
+        writePng(session.outputs().add(output.output), picture, png, session.threads());
+        session.addOutput(output.output);
+    });
+}
+
+} // namespace ibl

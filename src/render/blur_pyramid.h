@@ -1,0 +1,38 @@
+// Blurs of a picture by pyramids. Internal to the render layer.
+//
+// Levels halve the size, rounded up; the formulas stand in shaders/resize.glsl. Blurs keep flat
+// pictures flat and lose no energy. A level l enlarged again is the picture blurred by very nearly
+// a Gaussian. The first reduction averages 2x2 pixels, of variance 1/4, the others weigh by 1 3 3 1
+// / 8, of variance 3/4 in pixels of what they read, as do all steps back up; its variance is
+//     1/4 + 3/4 (4 + ... + 4^(l-1)) + 3/4 (1 + 4 + ... + 4^(l-1)) = 4^l / 2 - 1.
+#pragma once
+
+#include "render/frame_tiles.h"
+#include "render/passes.h"
+
+#include <optional>
+#include <span>
+
+namespace ibl {
+
+/// The l (not a whole number) whose variance 4^l / 2 - 1 is that of `deviation`, in pixels of the
+/// picture; 1 at least.
+double levelOfDeviation(double deviation);
+
+/// Level 1 of the picture times `exposure`: all of it, or its part above the threshold (see
+/// shaders/exposure.glsl). A picture of more than twice the device's largest texture is reduced by
+/// more than two.
+Target reduceFrame(Passes& passes, FrameTiles& tiles, double exposure,
+                   std::optional<double> threshold);
+
+/// Adds sum over l of weights[l - 1] (level l enlarged to level 1) to `sum`, of the size of `base`,
+/// which is level 1.
+void addLevels(Passes& passes, const Target& base, std::span<const double> weights,
+               const Target& sum);
+
+/// Level 1 blurred, in some smaller size that holds it, such that it is the picture, of `frame`
+/// pixels, blurred by a Gaussian of that deviation once it is enlarged to level 1 and to the
+/// picture.
+Target blurred(Passes& passes, const Target& base, const V2i& frame, double deviation);
+
+} // namespace ibl

@@ -1,0 +1,51 @@
+// What the tests of the display chain share.
+#pragma once
+
+#include "scene_support.h"
+
+#include "render/display_chain.h"
+
+#include <vector>
+
+namespace ibl {
+
+inline Image shown(const DisplayOptions& options, Image picture, double exposure = 0,
+                   int tile_edge = 4096) {
+    DisplayChain(softwareContext(), options, std::nullopt, tile_edge).apply(picture, exposure);
+    return picture;
+}
+
+inline Image displayed(ToneMap map, const ToneParameters& parameters, Per per, const Image& picture,
+                       double exposure = 0) {
+    DisplayOptions options;
+    options.tone_map = map;
+    options.parameters = parameters;
+    options.per = per;
+    return shown(options, picture, exposure);
+}
+
+/// A picture one pixel high, of greys.
+inline Image row(const std::vector<float>& values) {
+    Image picture(static_cast<int>(values.size()), 1);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        for (int c = 0; c < 3; ++c)
+            picture.pixels[3 * i + static_cast<std::size_t>(c)] = values[i];
+    }
+    return picture;
+}
+
+inline Image flat(int width, int height, float value) {
+    Image picture(width, height);
+    for (float& v : picture.pixels)
+        v = value;
+    return picture;
+}
+
+inline double total(const Image& picture) {
+    double sum = 0;
+    for (const float v : picture.pixels)
+        sum += v;
+    return sum;
+}
+
+} // namespace ibl
