@@ -157,8 +157,11 @@ void runLights(const LightsOptions& options) {
     if (!options.preview.empty()) {
         session.stage("preview", [&] {
             const Preview picture = drawPreview(latlong, set.lights);
-            writePng8(session.outputs().add(options.preview), picture.bytes, picture.width,
-                      picture.height, 3, session.threads());
+            Image codes(picture.width, picture.height);
+            std::ranges::transform(picture.bytes, codes.pixels.begin(),
+                                   [](std::uint8_t byte) { return byte / 255.0f; });
+            writePng(session.outputs().add(options.preview), codes,
+                     {.bits = 8, .dither = false, .encoded = true}, session.threads());
             session.addOutput(options.preview);
         });
     }
