@@ -1,8 +1,10 @@
 // To and from square maps, and whatever has no closed form: a texel of the result is cut into
-// quadrilaterals, whose corners are carried into the source's image and joined by straight lines
-// there. Neighbouring quadrilaterals share their corners, so they tile the source's plane and every
-// source pixel gives away its whole area. A quadrilateral whose middle is not where its corners'
-// mean is (bent, or across a fold, rim or edge of a face) is quartered.
+// cells, whose corners and middles of edges are carried into the source's image and joined by
+// straight lines there. Neighbouring cells share them, so they tile the source's plane and every
+// source pixel gives away its whole area. A cell with an edge whose middle is not the mean of its
+// ends, or whose own middle is not that of its corners (bent, or across a fold, rim or edge of a
+// face), is quartered. The edges must be looked at: where the map is harmonic, as longitude nearly
+// is about a pole, the corners' mean is the middle however much the edges bend.
 #include "panorama/lookup.h"
 #include "panorama/resample_parts.h"
 #include "panorama/square_maps.h"
@@ -12,12 +14,14 @@
 namespace ibl {
 namespace {
 
-/// Quadrilaterals bend by no more than this many source pixels...
+/// Cells' edges and middles bend by no more than this many source pixels, so that the two halves of
+/// an edge bend by no more than a quarter of it...
 constexpr double kBend = 0.01;
-/// ...unless they have been quartered this often: then by this many, and beyond, across a fold, rim
-/// or face, the source is read at their middle.
-constexpr int kMostQuarterings = 6;
-constexpr double kMostBend = 0.5;
+/// ...unless a cell has less than this part of a source pixel's solid angle: then the source is
+/// read at its middle.
+constexpr double kSmallest = 1.0 / 4096;
+/// Bounds the recursion where lat-long pixels shrink to nothing, at their poles.
+constexpr int kMostQuarterings = 24;
 /// Corners stand this much inside, because texels' edges are where cubes' faces meet and discs end.
 constexpr double kInside = 1e-9;
 
@@ -56,7 +60,9 @@ public:
           result_(result),
           width_(source.image.width),
           height_(source.image.height),
-          columns_(source.layout == Layout::latlong ? source.image.width : 0) {}
+          columns_(source.layout == Layout::latlong ? source.image.width : 0),
+          steradians_(steradiansPerPixel(source.layout, width_, height_)),
+          mean_pixel_(4 * kPi / (static_cast<double>(width_) * height_)) {}
 
     /// Mean of the source over what belongs to a texel; false if nothing was found.
     bool mean(int x, int y, V3d& value) {
@@ -90,27 +96,37 @@ private:
 
     /// Quarters of the square of edge `size` at (x, y), as often as they need it.
     void read(double x, double y, double size, int depth) {
-        const double x0 = x + kInside, x1 = x + size - kInside;
-        const double y0 = y + kInside, y1 = y + size - kInside;
-        const Image& image = result_.image;
         if (isOutside(x, y, size)) return;
-        const auto middle = texelDirection(result_.layout, image.width, image.height,
-                                           x + 0.5 * size, y + 0.5 * size);
-        const V2d centre = middle ? placeOf(*middle) : V2d(0);
-        std::vector<V2d> quad{placeOf(direction(x0, y0)), placeOf(direction(x1, y0)),
-                              placeOf(direction(x1, y1)), placeOf(direction(x0, y1))};
-        if (middle && isFlat(centre, quad, depth < kMostQuarterings ? kBend : kMostBend))
-            return readQuad(quad);
-        if (depth < kMostQuarterings) {
-            const double half = 0.5 * size;
+        const double half = 0.5 * size, end = size - kInside;
+        const auto middle = texelDirection(result_.layout, result_.image.width,
+                                           result_.image.height, x + half, y + half);
+        const V3d d = middle.value_or(V3d(0, 0, -1));
+        const V2d centre = placeOf(d);
+        if (middle) {
+            // Corners, and middles of edges after them, around the cell.
+            const std::array<V2d, 8> steps{
+                V2d(kInside, kInside), V2d(half, kInside), V2d(end, kInside), V2d(end, half),
+                V2d(end, end),         V2d(half, end),     V2d(kInside, end), V2d(kInside, half)};
+            std::array<V2d, 8> around;
+            std::transform(steps.begin(), steps.end(), around.begin(), [&](const V2d& step) {
+                return placeOf(direction(x + step.x, y + step.y));
+            });
+            if (isFlat(centre, around)) return readCell(around);
+        }
+        const double unit = size * size * unitDensity();
+        if (depth < kMostQuarterings && unit > kSmallest * pixelSolidAngle(d)) {
             for (int k = 0; k < 4; ++k)
                 read(x + k % 2 * half, y + k / 2 * half, half, depth + 1);
-            return;
+        } else if (middle) {
+            add(static_cast<int>(centre.x), static_cast<int>(centre.y),
+                unit * solidAngleDensity(result_.layout, d));
         }
-        if (!middle) return;
-        const double solid_angle =
-            size * size * solidAngleDensity(result_.layout, *middle) * unitDensity();
-        add(static_cast<int>(centre.x), static_cast<int>(centre.y), solid_angle);
+    }
+
+    /// Of the source's pixels about a direction; of square maps and faces the mean.
+    double pixelSolidAngle(const V3d& d) const {
+        if (source_.layout != Layout::latlong) return mean_pixel_;
+        return solidAngleDensity(source_.layout, d) * steradians_;
     }
 
     /// Whether a square lies outside a ball map's disc.
@@ -126,24 +142,30 @@ private:
         return steradiansPerPixel(result_.layout, result_.image.width, result_.image.height);
     }
 
-    bool isFlat(const V2d& centre, std::vector<V2d>& quad, double bend) const {
-        V2d mean(0);
-        for (V2d& corner : quad) {
+    /// Brings a cell's points to the side of a lat-long's seam where its middle is.
+    bool isFlat(const V2d& centre, std::array<V2d, 8>& around) const {
+        for (V2d& p : around) {
             if (columns_ > 0) {
-                if (corner.x - centre.x > 0.5 * columns_) corner.x -= columns_;
-                if (centre.x - corner.x > 0.5 * columns_) corner.x += columns_;
+                if (p.x - centre.x > 0.5 * columns_) p.x -= columns_;
+                if (centre.x - p.x > 0.5 * columns_) p.x += columns_;
             } else if (source_.layout == Layout::faces &&
-                       std::floor(corner.y / width_) != std::floor(centre.y / width_)) {
+                       std::floor(p.y / width_) != std::floor(centre.y / width_)) {
                 return false;
             }
-            mean += corner * 0.25;
         }
-        return std::abs(mean.x - centre.x) < bend && std::abs(mean.y - centre.y) < bend;
+        const auto near = [](const V2d& a, const V2d& b) {
+            return std::abs(a.x - b.x) < kBend && std::abs(a.y - b.y) < kBend;
+        };
+        for (std::size_t i = 0; i < 8; i += 2) {
+            if (!near(around[i + 1], (around[i] + around[(i + 2) % 8]) * 0.5)) return false;
+        }
+        return near(centre, (around[0] + around[2] + around[4] + around[6]) * 0.25);
     }
 
-    void readQuad(const std::vector<V2d>& quad) {
-        double left = quad[0].x, right = left, top = quad[0].y, bottom = top;
-        for (const V2d& p : quad) {
+    void readCell(const std::array<V2d, 8>& around) {
+        const std::vector<V2d> cell(around.begin(), around.end());
+        double left = cell[0].x, right = left, top = cell[0].y, bottom = top;
+        for (const V2d& p : cell) {
             left = std::min(left, p.x);
             right = std::max(right, p.x);
             top = std::min(top, p.y);
@@ -151,7 +173,7 @@ private:
         }
         std::vector<V2d> strip, part;
         for (int y = static_cast<int>(std::floor(top)); y < bottom; ++y) {
-            cutBetween(quad, 1, y, y + 1, strip);
+            cutBetween(cell, 1, y, y + 1, strip);
             for (int x = static_cast<int>(std::floor(left)); x < right; ++x) {
                 cutBetween(strip, 0, x, x + 1, part);
                 if (part.size() >= 3) addPart(x, y, part);
@@ -166,9 +188,7 @@ private:
         if (columns_ > 0) middle.x -= std::floor(middle.x / columns_) * columns_;
         const auto d = texelDirection(source_.layout, width_, height_, middle.x, middle.y);
         if (!d) return;
-        add(x, y,
-            area(part) * solidAngleDensity(source_.layout, *d) *
-                steradiansPerPixel(source_.layout, width_, height_));
+        add(x, y, area(part) * solidAngleDensity(source_.layout, *d) * steradians_);
     }
 
     void add(int x, int y, double solid_angle) {
@@ -199,7 +219,9 @@ private:
     const Panorama& source_;
     const Panorama& result_;
     int width_, height_;
-    int columns_; ///< around, of lat-longs
+    int columns_;       ///< around, of lat-longs
+    double steradians_; ///< to a pixel of the source where its density is 1
+    double mean_pixel_; ///< steradians to a pixel of the source
     V3d sum_{0, 0, 0};
     double weight_ = 0;
 };
