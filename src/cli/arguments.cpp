@@ -85,7 +85,9 @@ void bindImageOutput(CLI::App& app, ImageOutputOptions& options) {
         ->type_name("FORMAT")
         ->group("Output");
     bindType(app, options.type);
-    app.add_option("--compression", options.compression, "Compression of EXR files (default zip)")
+    app.add_option(
+           "--compression", options.compression,
+           "Compression of EXR files (default zip; float results of specular and diffuse: none)")
         ->check(CLI::IsMember(
             {"none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"}))
         ->type_name("NAME")

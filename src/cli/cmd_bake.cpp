@@ -107,6 +107,7 @@ void runBake(const BakeOptions& options) {
 
     BakeFolder folder(options.folder);
     WriteOptions how;
+    how.smooth = true;
     how.type = options.type.value_or(PixelType::float32);
     how.threads = session.threads();
     session.stage("write", [&] {

@@ -88,6 +88,7 @@ void runDiffuse(const CLI::App& app, const DiffuseOptions& options) {
     const bool has_map = !options.output.output.empty();
     WriteOptions how;
     if (has_map) how = writeOptions(options.output, options.common, options.to);
+    how.smooth = true;
     const Panorama latlong{Layout::latlong,
                            latlongOf(session.readProbe(options.probe), session.threads())};
     std::vector<PrefilterResult> results;

@@ -101,7 +101,8 @@ std::vector<PrefilterRequest> requestsOf(const SpecularOptions& options, const W
 
 void runSpecular(const SpecularOptions& options) {
     Session session("specular", options.common);
-    const WriteOptions how = writeOptions(options.output, options.common, options.to);
+    WriteOptions how = writeOptions(options.output, options.common, options.to);
+    how.smooth = true;
     const std::vector<PrefilterRequest> requests = requestsOf(options, how);
     const Panorama latlong{Layout::latlong,
                            latlongOf(session.readProbe(options.probe), session.threads())};

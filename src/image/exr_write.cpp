@@ -56,7 +56,10 @@ Imf::Compression compressionNamed(const std::string& name, const std::string& pa
 
 Imf::Header makeHeader(const Image& image, const WriteOptions& options, const std::string& path) {
     Imf::Header header(image.width, image.height);
-    header.compression() = compressionNamed(options.compression, path);
+    const bool plain = options.smooth && options.type == PixelType::float32;
+    header.compression() = options.compression.empty() && plain
+                               ? Imf::NO_COMPRESSION
+                               : compressionNamed(options.compression, path);
     header.zipCompressionLevel() = kZipLevel;
     const Imf::PixelType type = options.type == PixelType::half ? Imf::HALF : Imf::FLOAT;
     for (int c = 0; c < image.channels; ++c)
