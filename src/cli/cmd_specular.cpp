@@ -102,8 +102,8 @@ std::vector<PrefilterRequest> requestsOf(const SpecularOptions& options, const W
 void runSpecular(const SpecularOptions& options) {
     Session session("specular", options.common);
     WriteOptions how = writeOptions(options.output, options.common, options.to);
-    how.smooth = true;
     const std::vector<PrefilterRequest> requests = requestsOf(options, how);
+    how.smooth = options.levels || !isMirror(requests[0].lobe);
     const Panorama latlong{Layout::latlong,
                            latlongOf(session.readProbe(options.probe), session.threads())};
     const auto results = runPrefilter(session, latlong, requests, options.quality);
