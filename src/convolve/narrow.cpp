@@ -10,7 +10,7 @@
 namespace ibl {
 namespace {
 
-/// 1 up to half of the degree (to 1e-6), 1.5e-3 at the degree.
+/// 1 up to 0.6 of the degree (to 1e-6), 1.5e-3 at the degree.
 double taper(double l, int degree) {
     return 0.5 * std::erfc(14 * (l / degree - 0.85));
 }
@@ -95,6 +95,7 @@ NarrowPeaks makeNarrowPeaks(const std::vector<Peak>& peaks, int width, int heigh
                             const NarrowLobe& narrow) {
     const int degree = static_cast<int>(narrow.k.size()) - 1;
     NarrowPeaks result{makePeakSum(peaks, width, height, lobe), narrow.area, 0, 0, {}, 0};
+    if (peaks.empty()) return result;
     result.variation = 2.0 / degree;
     result.step = 1.0 / (16 * degree);
     // The taper's width in degrees, 0.05 B, makes the difference fall as exp(-(0.05 B t)^2 / 2).
@@ -136,10 +137,6 @@ double bandBeyond(const NarrowPeaks& peaks, double chord) {
     return before * -f * (f - 1) * (f - 2) / 6 + p[0] * (f + 1) * (f - 1) * (f - 2) / 2 -
            p[1] * (f + 1) * f * (f - 2) / 2 + p[2] * (f + 1) * f * (f - 1) / 6;
 }
-
-} // namespace
-
-namespace {
 
 /// Mean over a texel's points of a kernel's mass over a peak's pixel; Q and total as for
 /// rectangleMass.

@@ -73,7 +73,7 @@ double narrowThreshold(const ProbeStatistics& probe) {
     for (const double a : probe.absolute)
         mean += a * a / (4 * kPi);
     double threshold = 0;
-    for (const int peaks : {0, 1, 4, 16}) {
+    for (const int peaks : {0, 1, 4, 16, 64}) {
         threshold = peakThreshold(probe, peaks);
         if (clampedEnergy(probe, threshold) <= 9 * mean) break;
     }
