@@ -17,12 +17,6 @@ namespace {
 
 using Imath::V2i;
 
-constexpr std::array<ShaderInfo, 3> kShaders{{
-    {Shader::mirror, "mirror", "mirror.frag", true, false},
-    {Shader::diffuse, "diffuse", "diffuse.frag", false, true},
-    {Shader::mirrorDiffuse, "mirror-diffuse", "mirror_diffuse.frag", true, true},
-}};
-
 // A frame is drawn in tiles, so that memory beside the picture itself does not grow with it. Every
 // tile draws the whole mesh once a sample, so they are no smaller than they must be.
 constexpr int kTileWidth = 2048, kTileHeight = 2048;
@@ -32,22 +26,6 @@ Error usage(const std::string& problem) {
 }
 
 } // namespace
-
-std::span<const ShaderInfo> shaderTable() {
-    return kShaders;
-}
-
-const ShaderInfo& shaderInfo(Shader shader) {
-    return *std::find_if(kShaders.begin(), kShaders.end(),
-                         [&](const ShaderInfo& info) { return info.shader == shader; });
-}
-
-std::optional<Shader> shaderFromName(std::string_view name) {
-    for (const ShaderInfo& info : kShaders) {
-        if (info.name == name) return info.shader;
-    }
-    return std::nullopt;
-}
 
 bool needsProbe(const Material& material, const Background& background) {
     return shaderInfo(material.shader).reads_probe ||
@@ -76,6 +54,7 @@ struct Renderer::State {
 
     void uploadScene(const Scene& scene);
     void makePrograms(const Scene& scene);
+    void setMaterial(const Material& material) const;
     void makeTargets();
 
     V2i tileSize() const;
@@ -120,8 +99,7 @@ void Renderer::State::makePrograms(const Scene& scene) {
         program(mesh ? "mesh.vert" : "fullscreen.vert",
                 {"view.glsl", "lookup.glsl", "maps.glsl", shaderInfo(scene.material.shader).file,
                  mesh ? "mesh_surface.frag" : "sphere_surface.frag"});
-    setUniform(surface, "base_color", V3d(scene.material.base_color));
-    setUniform(surface, "reflectivity", scene.material.reflectivity);
+    setMaterial(scene.material);
     if (std::holds_alternative<ProbeBackground>(scene.background)) {
         background = program("fullscreen.vert",
                              {"view.glsl", "lookup.glsl", "maps.glsl", "background_probe.frag"});
@@ -134,6 +112,20 @@ void Renderer::State::makePrograms(const Scene& scene) {
     const double weight = std::exp2(-std::ceil(std::log2(options.samples)));
     if (accumulate) setUniform(accumulate, "weight", weight);
     setUniform(resolve, "sum_weight", weight * options.samples);
+}
+
+void Renderer::State::setMaterial(const Material& material) const {
+    for (const Parameter parameter : shaderInfo(material.shader).parameters) {
+        const ParameterInfo& info = parameterInfo(parameter);
+        std::string uniform(info.name);
+        std::ranges::replace(uniform, '-', '_');
+        const V3d& value = material[parameter];
+        if (info.components == 3) {
+            setUniform(surface, uniform.c_str(), value);
+        } else {
+            setUniform(surface, uniform.c_str(), value.x);
+        }
+    }
 }
 
 V2i Renderer::State::tileSize() const {

@@ -2,66 +2,15 @@
 #pragma once
 
 #include "image/image.h"
-#include "panorama/panorama.h"
 #include "render/camera.h"
 #include "render/egl_context.h"
-#include "render/mesh.h"
+#include "render/scene.h"
 
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <span>
-#include <string_view>
-#include <variant>
 
 namespace ibl {
-
-/// How the surface answers the probe. L is the probe's radiance, E its irradiance, n the normal, r
-/// the reflected ray, c the base colour, k the reflectivity.
-enum class Shader {
-    mirror,        ///< c L(r)
-    diffuse,       ///< c E(n) / pi: c is the albedo
-    mirrorDiffuse, ///< (1 - k) c E(n) / pi + k L(r)
-};
-
-/// A row for each shader: its name to users, and which maps it reads.
-struct ShaderInfo {
-    Shader shader;
-    std::string_view name;
-    std::string_view file; ///< in the shader folder
-    bool reads_probe;
-    bool reads_diffuse;
-};
-std::span<const ShaderInfo> shaderTable();
-const ShaderInfo& shaderInfo(Shader shader);
-std::optional<Shader> shaderFromName(std::string_view name);
-
-struct Material {
-    Shader shader = Shader::mirror;
-    V3f base_color{1, 1, 1};
-    float reflectivity = 0.5f; ///< of mirrorDiffuse, 0 to 1
-};
-
-/// What is seen beside the object.
-struct ProbeBackground {};     ///< the probe itself
-struct NoBackground {};        ///< nothing: the picture has premultiplied alpha
-using ColorBackground = V3f;   ///< linear radiance
-using ImageBackground = Image; ///< linear radiance, 3 channels, of the frame's own size
-using Background = std::variant<ProbeBackground, NoBackground, ColorBackground, ImageBackground>;
-
-/// All that is uploaded once and drawn from any number of cameras. What the picture does not need
-/// may be absent: a diffuse object before no probe needs no probe, a mirror no diffuse map.
-struct Scene {
-    const Panorama* probe = nullptr;   ///< radiance
-    const Panorama* diffuse = nullptr; ///< irradiance / pi, such as prefilter() gives
-    Object object;
-    Material material;
-    Background background;
-};
-
-/// Whether the scene needs the probe's radiance, and its diffuse map, to be drawn.
-bool needsProbe(const Material& material, const Background& background);
-bool needsDiffuse(const Material& material);
 
 struct FrameOptions {
     int width = 512;

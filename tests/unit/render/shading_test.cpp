@@ -124,7 +124,7 @@ TEST(Shading, DiffuseSphereIsTheOraclesIrradiance) {
     Scene scene;
     scene.diffuse = &diffuse;
     scene.material.shader = Shader::diffuse;
-    scene.material.base_color = {0.5f, 1, 0.25f};
+    scene.material[Parameter::baseColor] = {0.5, 1, 0.25};
     scene.background = ColorBackground(1, 2, 3);
     const Camera camera = kCameras[2];
     const Image frame = drawSphere(scene, camera, 24, 16, 1);
@@ -155,7 +155,9 @@ TEST(Shading, MirrorDiffuseIsTheirMixture) {
     Scene scene;
     scene.probe = &probe;
     scene.diffuse = &diffuse;
-    scene.material = {Shader::mirrorDiffuse, {0.5f, 0.25f, 1}, 0.3f};
+    scene.material = Material(Shader::mirrorDiffuse);
+    scene.material[Parameter::baseColor] = {0.5, 0.25, 1};
+    scene.material[Parameter::reflectivity] = V3d(0.3);
     const Image frame = drawSphere(scene, kCameras[1], 40, 30, 1);
     EXPECT_LT(frameError(frame, kCameras[1], 1, true,
                          [&](const V3d& eye, const V3d& d) {
