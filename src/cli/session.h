@@ -3,6 +3,7 @@
 
 #include "cli/arguments.h"
 
+#include "core/progress.h"
 #include "image/output_set.h"
 #include "panorama/panorama.h"
 #include "panorama/probe_file.h"
@@ -35,6 +36,10 @@ public:
     void note(std::string_view subject, std::string_view text);
     /// A line on standard error with --verbose.
     void detail(std::string_view text) const;
+
+    /// Shows on a terminal how far a stage is, once it lasts; empty without a terminal or with
+    /// --quiet.
+    TellProgress progress(const char* name) const;
 
     /// Runs `body` as a named stage whose seconds go into the report.
     template <class Body>

@@ -136,8 +136,10 @@ WriteLosses writeExr(OutputFile& file, const Image& image, const WriteOptions& o
     WriteLosses losses;
     try {
         OutputStream stream(file);
-        Imf::OutputFile out(stream, makeHeader(image, options, file.path()),
-                            exrThreads(options.threads));
+        const Imf::Header header = makeHeader(image, options, file.path());
+        // Handing rows to other threads costs more than copying them.
+        const bool plain = header.compression() == Imf::NO_COMPRESSION;
+        Imf::OutputFile out(stream, header, plain ? 0 : exrThreads(options.threads));
         if (options.type == PixelType::half) {
             losses = writeHalf(out, image, options.threads);
         } else {
