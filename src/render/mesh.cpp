@@ -34,4 +34,21 @@ Box3f bounds(const Object& object) {
     return box;
 }
 
+std::vector<Part> partsOf(const Object& object) {
+    if (!object.parts.empty()) return object.parts;
+    return {{0, object.mesh ? object.mesh->indices.size() : 0, {}}};
+}
+
+Extent extentOf(const Object& object) {
+    Extent extent;
+    extent.box = bounds(object);
+    if (!object.mesh) return extent;
+    extent.centre = (V3d(extent.box.min) + V3d(extent.box.max)) * 0.5;
+    extent.radius = 0;
+    for (const V3f& position : object.mesh->positions) {
+        extent.radius = std::max(extent.radius, (V3d(position) - extent.centre).length());
+    }
+    return extent;
+}
+
 } // namespace ibl

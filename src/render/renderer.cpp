@@ -5,6 +5,7 @@
 #include "render/panorama_texture.h"
 #include "render/sample_pattern.h"
 #include "render/shader_program.h"
+#include "render/surface_textures.h"
 #include "render/uniforms.h"
 
 #include <algorithm>
@@ -40,7 +41,11 @@ struct Renderer::State {
     FrameOptions options;
     bool opaque = true;
     V3f clear_color{0, 0, 0};
-    Box3f box;
+    Extent extent;
+    std::vector<Part> parts;
+    SurfaceTextures surfaces;
+    Material material;
+    Similarity similarity;
     PanoramaTexture probe, diffuse;
     Texture image;
     std::optional<MeshBuffers> mesh;
@@ -54,14 +59,17 @@ struct Renderer::State {
 
     void uploadScene(const Scene& scene);
     void makePrograms(const Scene& scene);
-    void setMaterial(const Material& material) const;
+    void setMaterial(const Material& material);
+    void place(const Turn& turn, const Placement& placement);
     void makeTargets();
 
     V2i tileSize() const;
     void drawFullscreen(const Program& program) const;
     void drawSample(const CameraRays& rays, const V2i& tile, const V2d& jitter) const;
-    void drawSphere(const CameraRays& rays, const V2i& tile) const;
-    void drawMesh(const CameraRays& rays, const V2d& jitter) const;
+    void drawSphere(const Program& program, const CameraRays& rays, const V2i& tile) const;
+    void drawObject(const Program& program, const CameraRays& rays, const V2i& tile,
+                    const V2d& jitter) const;
+    void drawMesh(const Program& program, const CameraRays& rays, const V2d& jitter) const;
     void drawTile(const CameraRays& rays, const V2i& tile) const;
     void drawFrame(const Camera& camera, Image& frame);
 };
@@ -83,7 +91,9 @@ void Renderer::State::uploadScene(const Scene& scene) {
     }
     if (const auto* color = std::get_if<ColorBackground>(&scene.background)) clear_color = *color;
     opaque = !std::holds_alternative<NoBackground>(scene.background);
-    box = bounds(scene.object);
+    extent = extentOf(scene.object);
+    parts = partsOf(scene.object);
+    surfaces = uploadSurfaces(scene.object);
     if (scene.object.mesh) mesh = uploadMesh(*scene.object.mesh);
 }
 
@@ -91,15 +101,17 @@ void Renderer::State::makePrograms(const Scene& scene) {
     std::vector<std::string> definitions = probe.definitions("PROBE");
     for (const std::string& d : diffuse.definitions("DIFFUSE"))
         definitions.push_back(d);
+    for (const std::string& d : surfaces.definitions)
+        definitions.push_back(d);
     const auto& folder = options.shader_folder;
     const auto program = [&](std::string_view vertex, std::vector<std::string_view> fragment) {
         return makeProgram({vertex, std::move(fragment), definitions, {}}, folder);
     };
     surface =
         program(mesh ? "mesh.vert" : "fullscreen.vert",
-                {"view.glsl", "lookup.glsl", "maps.glsl", shaderInfo(scene.material.shader).file,
+                {"view.glsl", "lookup.glsl", "maps.glsl", "surface.glsl",
+                 shaderInfo(scene.material.shader).file,
                  mesh ? "mesh_surface.frag" : "sphere_surface.frag"});
-    setMaterial(scene.material);
     if (std::holds_alternative<ProbeBackground>(scene.background)) {
         background = program("fullscreen.vert",
                              {"view.glsl", "lookup.glsl", "maps.glsl", "background_probe.frag"});
@@ -112,9 +124,19 @@ void Renderer::State::makePrograms(const Scene& scene) {
     const double weight = std::exp2(-std::ceil(std::log2(options.samples)));
     if (accumulate) setUniform(accumulate, "weight", weight);
     setUniform(resolve, "sum_weight", weight * options.samples);
+    setMaterial(scene.material);
+    place(scene.turn, scene.placement);
 }
 
-void Renderer::State::setMaterial(const Material& material) const {
+void Renderer::State::place(const Turn& turn, const Placement& placement) {
+    similarity = similarityOf(placement, extent);
+    const M33d probe_from_world = turnMatrix(turn).transposed();
+    setUniform(surface, "probe_from_world", probe_from_world);
+    if (background) setUniform(background, "probe_from_world", probe_from_world);
+}
+
+void Renderer::State::setMaterial(const Material& of_object) {
+    material = of_object;
     for (const Parameter parameter : shaderInfo(material.shader).parameters) {
         const ParameterInfo& info = parameterInfo(parameter);
         std::string uniform(info.name);
@@ -154,28 +176,55 @@ void Renderer::State::drawFullscreen(const Program& program) const {
     glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
-void Renderer::State::drawSphere(const CameraRays& rays, const V2i& tile) const {
-    setUniform(surface, "eye", rays.eye);
-    setUniform(surface, "moment_forward", rays.eye.cross(rays.forward));
-    setUniform(surface, "moment_x", rays.eye.cross(rays.step_x));
-    setUniform(surface, "moment_y", rays.eye.cross(rays.step_y));
-    const PixelRect rect = unitSphereRect(rays, options.width, options.height);
+// The camera is brought to the unit sphere; directions stay as they are.
+void Renderer::State::drawSphere(const Program& program, const CameraRays& rays,
+                                 const V2i& tile) const {
+    CameraRays brought = rays;
+    brought.eye = (rays.eye - similarity.shift) / similarity.scale;
+    setUniform(program, "sphere_eye", brought.eye);
+    setUniform(program, "moment_forward", brought.eye.cross(rays.forward));
+    setUniform(program, "moment_x", brought.eye.cross(rays.step_x));
+    setUniform(program, "moment_y", brought.eye.cross(rays.step_y));
+    setUniform(program, "sphere_radius", similarity.scale);
+    setUniform(program, "object_from_world", similarity.turn.transposed());
+    const PixelRect rect = unitSphereRect(brought, options.width, options.height);
     glScissor(rect.min.x - tile.x, rect.min.y - tile.y, rect.max.x - rect.min.x,
               rect.max.y - rect.min.y);
     glEnable(GL_SCISSOR_TEST);
     glDepthRange(0, 0); // whatever the triangle's depth is: the background stays behind
-    drawFullscreen(surface);
+    drawFullscreen(program);
     glDepthRange(0, 1);
     glDisable(GL_SCISSOR_TEST);
 }
 
-void Renderer::State::drawMesh(const CameraRays& rays, const V2d& jitter) const {
+void Renderer::State::drawMesh(const Program& program, const CameraRays& rays,
+                               const V2d& jitter) const {
+    const M44d world_from_object = matrixOf(similarity);
+    Box3f box; // in the world
+    for (int corner = 0; corner < 8; ++corner) {
+        const Box3f& b = extent.box;
+        const V3d p(corner & 1 ? b.max.x : b.min.x, corner & 2 ? b.max.y : b.min.y,
+                    corner & 4 ? b.max.z : b.min.z);
+        box.extendBy(V3f(similarity.point(p)));
+    }
     const auto clip_from_world = clipFromWorld(rays, box, jitter);
     if (!clip_from_world) return;
-    setUniform(surface, "clip_from_world", *clip_from_world);
-    glUseProgram(surface.id());
+    setUniform(program, "clip_from_object", world_from_object * *clip_from_world);
+    setUniform(program, "world_from_object", world_from_object);
+    glUseProgram(program.id());
     glBindVertexArray(mesh->array.id());
-    glDrawElements(GL_TRIANGLES, mesh->count, GL_UNSIGNED_INT, nullptr);
+    for (const Part& part : parts) {
+        bindSurface(surfaces, program, material, part.surface);
+        glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(part.count), GL_UNSIGNED_INT,
+                       reinterpret_cast<const void*>(part.first * sizeof(std::uint32_t)));
+    }
+}
+
+void Renderer::State::drawObject(const Program& program, const CameraRays& rays, const V2i& tile,
+                                 const V2d& jitter) const {
+    if (mesh) return drawMesh(program, rays, jitter);
+    bindSurface(surfaces, program, material, parts[0].surface);
+    drawSphere(program, rays, tile);
 }
 
 // One sample a pixel of a tile. `jitter` is the sample's place from the pixel's centre. The
@@ -199,11 +248,7 @@ void Renderer::State::drawSample(const CameraRays& rays, const V2i& tile, const 
     glClearBufferfv(GL_DEPTH, 0, &far_depth);
     glEnable(GL_DEPTH_TEST);
     setView(surface);
-    if (mesh) {
-        drawMesh(rays, jitter);
-    } else {
-        drawSphere(rays, tile);
-    }
+    drawObject(surface, rays, tile, jitter);
     if (background) {
         setView(background);
         setUniform(background, "tile_origin", tile);
@@ -273,6 +318,11 @@ Renderer::Renderer(const EglContext&, const Scene& scene, const FrameOptions& op
 Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+
+void Renderer::change(const Material& material, const Turn& turn, const Placement& placement) {
+    state_->setMaterial(material);
+    state_->place(turn, placement);
+}
 
 Image Renderer::render(const Camera& camera) {
     Image frame(state_->options.width, state_->options.height, state_->opaque ? 3 : 4);

@@ -31,6 +31,10 @@ public:
     Renderer(Renderer&&) noexcept;
     Renderer& operator=(Renderer&&) noexcept;
 
+    /// Gives the scene other values of its shader's parameters, another turn of the probe and
+    /// another place of the object, without another upload.
+    void change(const Material& material, const Turn& turn, const Placement& placement);
+
     /// Scene-linear pixels: RGBA, premultiplied, when the scene has no background, otherwise RGB.
     Image render(const Camera& camera);
 
