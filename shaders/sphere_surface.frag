@@ -13,12 +13,13 @@ uniform float sphere_radius; // in the world
 uniform mat3 object_from_world;
 layout(location = 0) out vec4 color;
 
-// The sphere as a lat-long. u jumps where the seam is, but not both u and u + 1/2 at once.
+// Texture coordinates as on a globe: u to the right seen from outside, the middle at +Z. u jumps at
+// the seam, but u and u + 1/2 do not both jump at one place.
 void readSphere(vec3 normal) {
     const float pi = 3.14159265358979;
     vec3 n = object_from_world * normal;
     float turn = atan(n.x, n.z) / (2.0 * pi);
-    float u = 0.5 - turn, other = fract(1.0 - turn);
+    float u = 0.5 + turn, other = fract(1.0 + turn);
     vec2 uv = vec2(u, atan(length(n.xz), n.y) / pi);
     vec2 dx = dFdx(uv), dy = dFdy(uv);
     float other_x = dFdx(other), other_y = dFdy(other);
@@ -44,5 +45,6 @@ void main() {
     surface_depth = sphere_radius * distance / length(ray);
     if (surface_alpha < alpha_cutoff) discard;
     vec3 normal = inside ? -outward : outward;
-    color = vec4(shade(normal, incident) + surface_emission, 1.0);
+    vec3 radiance = shade(normal, incident);
+    color = vec4(radiance + surface_emission, 1.0);
 }

@@ -1,5 +1,7 @@
 #include "cli/frame_range.h"
 
+#include "core/error.h"
+
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -95,15 +97,15 @@ CLI::Validator rampIn(double least, double most) {
 
 CLI::Option* addRamps(CLI::App& app, const std::string& name, int count,
                       std::function<void(const std::vector<Ramp>&)> take, const std::string& help,
-                      const CLI::Validator& check, std::string& moving) {
+                      const CLI::Validator& check, FrameRange& range) {
     return app
         .add_option_function<std::vector<std::string>>(
             name,
-            [name, take = std::move(take), &moving](const std::vector<std::string>& texts) {
+            [name, take = std::move(take), &range](const std::vector<std::string>& texts) {
                 std::vector<Ramp> ramps;
                 for (const std::string& text : texts) {
                     ramps.push_back(*rampFrom(text));
-                    if (text.find("..") != text.npos) moving = name;
+                    if (text.find("..") != text.npos) range.moving = name;
                 }
                 take(ramps);
             },
@@ -111,6 +113,27 @@ CLI::Option* addRamps(CLI::App& app, const std::string& name, int count,
         ->delimiter(',')
         ->expected(count)
         ->check(check);
+}
+
+CLI::Option* addRamp(CLI::App& app, const std::string& name, Ramp& ramp, const std::string& help,
+                     const CLI::Validator& check, FrameRange& range) {
+    return addRamps(
+        app, name, 1, [&ramp](const std::vector<Ramp>& given) { ramp = given[0]; }, help, check,
+        range);
+}
+
+void requireFrames(const FrameRange& range, const std::string& output) {
+    if (!range.told && !range.moving.empty()) {
+        throw Error(ExitCode::usage, range.moving + ": a range FROM..TO is of --frames; give a "
+                                                    "number, or frames");
+    }
+    if (range.told && !hasFrameNumber(output)) {
+        throw Error(ExitCode::usage, output + ": frames need names of their own; write %04d where "
+                                              "the frame's number shall stand");
+    }
+    if (!range.told && hasFrameNumber(output)) {
+        throw Error(ExitCode::usage, output + ": which frame is not said; give --frames A-B");
+    }
 }
 
 void bindFrames(CLI::App& app, FrameRange& range) {
@@ -126,13 +149,14 @@ void bindFrames(CLI::App& app, FrameRange& range) {
                }
                if (!fits || range.first < 0 || range.last < range.first ||
                    range.last > kLastFrame) {
-                   throw CLI::ValidationError("--frames", "'" + text +
-                                                              "' is not FIRST-LAST, such as 1-24");
+                   throw CLI::ValidationError("--frames",
+                                              "'" + text + "' is not FIRST-LAST, such as 1-24");
                }
                range.told = true;
            },
-           "Draw these frames in turn; a number of the options above may then be a range FROM..TO, "
-           "and %04d in names is the frame")
+           "Draw these frames in turn: numbers may be ranges FROM..TO, linear from the first frame "
+           "to "
+           "the last, and %04d in names is the frame")
         ->type_name("A-B")
         ->group("Frames");
 }

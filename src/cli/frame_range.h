@@ -3,8 +3,10 @@
 
 #include <CLI/CLI.hpp>
 
+#include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace ibl {
 
@@ -13,6 +15,7 @@ struct FrameRange {
     int first = 0;
     int last = 0;
     bool told = false;
+    std::string moving; ///< an option that was given a range of numbers; "" if none was
 
     int count() const { return last - first + 1; }
 };
@@ -49,12 +52,19 @@ std::optional<Ramp> rampFrom(const std::string& text);
 /// What CLI11 checks of a ramp: both ends from `least` to `most`.
 CLI::Validator rampIn(double least, double most);
 
-/// An option of that many ramps, separated by commas. `given` is set when one of them moves.
+/// An option of that many ramps, separated by commas. `range` learns whether one of them moves.
 CLI::Option* addRamps(CLI::App& app, const std::string& name, int count,
                       std::function<void(const std::vector<Ramp>&)> take, const std::string& help,
-                      const CLI::Validator& check, std::string& moving);
+                      const CLI::Validator& check, FrameRange& range);
+/// The same of one.
+CLI::Option* addRamp(CLI::App& app, const std::string& name, Ramp& ramp, const std::string& help,
+                     const CLI::Validator& check, FrameRange& range);
 
 /// `--frames A-B`.
 void bindFrames(CLI::App& app, FrameRange& range);
+
+/// Refuses ranges of numbers without frames, and a sequence, or a single picture, whose output's
+/// name does not say so.
+void requireFrames(const FrameRange& range, const std::string& output);
 
 } // namespace ibl

@@ -23,8 +23,6 @@ FrameWriter::FrameWriter(int threads) {
 FrameWriter::~FrameWriter() {
     const std::lock_guard lock(mutex_);
     ended_ = true;
-    if (!waiting_.empty() && !failure_) failure_ = std::make_exception_ptr(0); // names no more
-    waiting_.clear();
     changed_.notify_all();
 }
 

@@ -31,7 +31,7 @@ public:
     /// At most `threads` frames are encoded at a time (0: as many as the machine has threads), and
     /// as many more wait.
     explicit FrameWriter(int threads);
-    /// Drops frames that wait.
+    /// Finishes what was handed in, so that a run that fails at a frame has written all before it.
     ~FrameWriter();
     FrameWriter(const FrameWriter&) = delete;
     FrameWriter& operator=(const FrameWriter&) = delete;

@@ -8,8 +8,29 @@
 namespace ibl {
 namespace {
 
-constexpr std::array<std::string_view, 5> kNames{"sphere", "cube", "torus", "teapot",
-                                                 "dodecahedron"};
+struct Named {
+    std::string_view name;
+    Mesh (*make)(); ///< none: the sphere
+};
+constexpr std::array<Named, 11> kObjects{{
+    {"sphere", nullptr},
+    {"cube", makeCube},
+    {"torus", makeTorus},
+    {"teapot", makeTeapot},
+    {"plane", makePlane},
+    {"cylinder", makeCylinder},
+    {"cone", makeCone},
+    {"tetrahedron", makeTetrahedron},
+    {"octahedron", makeOctahedron},
+    {"dodecahedron", makeDodecahedron},
+    {"icosahedron", makeIcosahedron},
+}};
+constexpr auto kNames = [] {
+    std::array<std::string_view, kObjects.size()> names;
+    for (std::size_t i = 0; i < names.size(); ++i)
+        names[i] = kObjects[i].name;
+    return names;
+}();
 
 } // namespace
 
@@ -18,12 +39,11 @@ std::span<const std::string_view> builtinObjectNames() {
 }
 
 std::optional<Object> builtinObject(std::string_view name) {
-    if (name == "sphere") return Object{};
-    if (name == "cube") return Object{makeCube()};
-    if (name == "torus") return Object{makeTorus()};
-    if (name == "teapot") return Object{makeTeapot()};
-    if (name == "dodecahedron") return Object{makeDodecahedron()};
-    return std::nullopt;
+    const auto row = std::ranges::find(kObjects, name, &Named::name);
+    if (row == kObjects.end()) return std::nullopt;
+    Object object;
+    if (row->make) object.mesh = row->make();
+    return object;
 }
 
 Box3f bounds(const Object& object) {

@@ -23,8 +23,9 @@ using Imath::V3f;
 /// Triangles, three indices each, counter-clockwise seen from outside.
 struct Mesh {
     std::vector<V3f> positions;
-    std::vector<V3f> normals;   ///< unit, outward; one a position
-    std::vector<V2f> texcoords; ///< one a position, or none; v down, (0, 0) the image's first corner
+    std::vector<V3f> normals; ///< unit, outward; one a position
+    std::vector<V2f>
+        texcoords; ///< one a position, or none; v down, (0, 0) the image's first corner
     std::vector<std::uint32_t> indices;
 };
 
@@ -74,9 +75,9 @@ std::vector<Part> partsOf(const Object& object);
 /// Names of the built-in objects, in the order in which they are shown to users.
 std::span<const std::string_view> builtinObjectNames();
 
-/// The built-in object of that name, if there is one. Each is centred on the origin; sphere, cube
-/// and dodecahedron have the unit sphere as circumscribed sphere, torus and teapot touch it from
-/// inside with their farthest point.
+/// The built-in object of that name, if there is one. Each lies in the unit sphere about the origin
+/// and touches it: the solids, plane and cylinder with their corners, torus and teapot from inside
+/// with their farthest point.
 std::optional<Object> builtinObject(std::string_view name);
 
 /// A box around the object.
@@ -89,7 +90,5 @@ struct Extent {
     double radius = 1;
 };
 Extent extentOf(const Object& object);
-
-Mesh loadObj(const std::string& path);
 
 } // namespace ibl

@@ -10,8 +10,9 @@ namespace ibl {
 
 using Imath::M44d;
 
-/// The object's points p stand at translate + scale * turn(p). With `fit` the object is brought into
-/// the unit sphere first: the middle of its box to the origin, its farthest point to distance 1.
+/// The object's points p stand at translate + scale * turn(p). With `fit` the object is brought
+/// into the unit sphere first: the middle of its box to the origin, its farthest point to
+/// distance 1.
 struct Placement {
     V3d translate{0, 0, 0};
     Turn turn;

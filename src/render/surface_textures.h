@@ -11,8 +11,8 @@
 namespace ibl {
 
 struct SurfaceTextures {
-    std::vector<Texture> textures; ///< as Object::textures, with mip levels
-    Texture white, flat;           ///< in the place of a texture that a part does not have
+    std::vector<Texture> textures;        ///< as Object::textures, with mip levels
+    Texture white, flat;                  ///< in the place of a texture that a part does not have
     std::vector<std::string> definitions; ///< of the kinds of texture that any part has
 };
 
