@@ -57,7 +57,7 @@ std::vector<EGLDeviceEXT> allDevices() {
     EGLint count = 0;
     if (!listed || !eglQueryDevicesEXT(static_cast<EGLint>(all.size()), all.data(), &count))
         return {};
-    return {all.begin(), all.begin() + count};
+    return std::vector<EGLDeviceEXT>(all.begin(), all.begin() + count);
 }
 
 // Software devices last; not at all hardware when only software is wanted.
