@@ -161,9 +161,14 @@ void Session::write(const std::string& path, const Panorama& panorama,
         addOutput(name);
 }
 
-void Session::write(const std::string& path, const Image& image, const WriteOptions& options) {
-    reportLosses(writeImage(outputs_, path, image, options), path, options);
+void Session::noteWritten(const std::string& path, const WriteLosses& losses,
+                          const WriteOptions& options) {
+    reportLosses(losses, path, options);
     addOutput(path);
+}
+
+void Session::write(const std::string& path, const Image& image, const WriteOptions& options) {
+    noteWritten(path, writeImage(outputs_, path, image, options), options);
 }
 
 void Session::write(const std::string& path, std::span<const Image* const> levels,

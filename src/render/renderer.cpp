@@ -5,6 +5,7 @@
 #include "render/panorama_texture.h"
 #include "render/sample_pattern.h"
 #include "render/shader_program.h"
+#include "render/surface_textures.h"
 #include "render/uniforms.h"
 
 #include <algorithm>
@@ -25,6 +26,22 @@ Error usage(const std::string& problem) {
     return {ExitCode::usage, "render: " + problem};
 }
 
+void setView(const Program& program, const CameraRays& rays, const V2i& tile, const V2d& jitter) {
+    setUniform(program, "pixel_offset", V2d(tile) + jitter - rays.centre);
+    setUniform(program, "forward", rays.forward);
+    setUniform(program, "step_x", rays.step_x);
+    setUniform(program, "step_y", rays.step_y);
+}
+
+void setUpDrawing(int frame_width) {
+    glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
+    glFrontFace(GL_CW);     // counter-clockwise, in a frame whose y is down
+    glDepthFunc(GL_LEQUAL); // the background stands at the far plane itself
+    glBlendFunc(GL_ONE, GL_ONE);
+    glPixelStorei(GL_PACK_ROW_LENGTH, frame_width);
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+}
+
 } // namespace
 
 bool needsProbe(const Material& material, const Background& background) {
@@ -40,30 +57,41 @@ struct Renderer::State {
     FrameOptions options;
     bool opaque = true;
     V3f clear_color{0, 0, 0};
-    Box3f box;
+    Extent extent;
+    std::vector<Part> parts;
+    SurfaceTextures surfaces;
+    Material material;
+    Similarity similarity;
     PanoramaTexture probe, diffuse;
     Texture image;
     std::optional<MeshBuffers> mesh;
 
     VertexArray no_vertices;
     Program surface, background, accumulate, resolve;
+    Program aov; ///< when first asked for
     // One tile: a sample, the sum of samples, and the picture as it is read.
     Texture sample, sum, mean;
     Renderbuffer depth;
     Framebuffer to_sample, to_sum, to_mean;
 
+    std::vector<std::string> mapDefinitions() const;
+    Program surfaceProgram(std::string_view shader) const;
     void uploadScene(const Scene& scene);
     void makePrograms(const Scene& scene);
-    void setMaterial(const Material& material) const;
+    void setMaterial(const Material& material);
+    void place(const Turn& turn, const Placement& placement);
     void makeTargets();
 
     V2i tileSize() const;
     void drawFullscreen(const Program& program) const;
     void drawSample(const CameraRays& rays, const V2i& tile, const V2d& jitter) const;
-    void drawSphere(const CameraRays& rays, const V2i& tile) const;
-    void drawMesh(const CameraRays& rays, const V2d& jitter) const;
+    void drawSphere(const Program& program, const CameraRays& rays, const V2i& tile) const;
+    void drawObject(const Program& program, const CameraRays& rays, const V2i& tile,
+                    const V2d& jitter) const;
+    void drawMesh(const Program& program, const CameraRays& rays, const V2d& jitter) const;
     void drawTile(const CameraRays& rays, const V2i& tile) const;
     void drawFrame(const Camera& camera, Image& frame);
+    void drawAovs(const Camera& camera, FrameAovs& aovs);
 };
 
 void Renderer::State::uploadScene(const Scene& scene) {
@@ -83,38 +111,62 @@ void Renderer::State::uploadScene(const Scene& scene) {
     }
     if (const auto* color = std::get_if<ColorBackground>(&scene.background)) clear_color = *color;
     opaque = !std::holds_alternative<NoBackground>(scene.background);
-    box = bounds(scene.object);
+    extent = extentOf(scene.object);
+    parts = partsOf(scene.object);
+    surfaces = uploadSurfaces(scene.object);
     if (scene.object.mesh) mesh = uploadMesh(*scene.object.mesh);
 }
 
-void Renderer::State::makePrograms(const Scene& scene) {
+std::vector<std::string> Renderer::State::mapDefinitions() const {
     std::vector<std::string> definitions = probe.definitions("PROBE");
     for (const std::string& d : diffuse.definitions("DIFFUSE"))
         definitions.push_back(d);
-    const auto& folder = options.shader_folder;
-    const auto program = [&](std::string_view vertex, std::vector<std::string_view> fragment) {
-        return makeProgram({vertex, std::move(fragment), definitions, {}}, folder);
+    return definitions;
+}
+
+// Draws the object with a file that defines shade().
+Program Renderer::State::surfaceProgram(std::string_view shader) const {
+    std::vector<std::string> definitions = mapDefinitions();
+    for (const std::string& d : surfaces.definitions)
+        definitions.push_back(d);
+    return makeProgram({mesh ? "mesh.vert" : "fullscreen.vert",
+                        {"view.glsl", "lookup.glsl", "maps.glsl", "surface.glsl", shader,
+                         mesh ? "mesh_surface.frag" : "sphere_surface.frag"},
+                        definitions,
+                        {}},
+                       options.shader_folder);
+}
+
+void Renderer::State::makePrograms(const Scene& scene) {
+    const auto program = [&](std::vector<std::string_view> fragment) {
+        return makeProgram({"fullscreen.vert", std::move(fragment), mapDefinitions(), {}},
+                           options.shader_folder);
     };
-    surface =
-        program(mesh ? "mesh.vert" : "fullscreen.vert",
-                {"view.glsl", "lookup.glsl", "maps.glsl", shaderInfo(scene.material.shader).file,
-                 mesh ? "mesh_surface.frag" : "sphere_surface.frag"});
-    setMaterial(scene.material);
+    surface = surfaceProgram(shaderInfo(scene.material.shader).file);
     if (std::holds_alternative<ProbeBackground>(scene.background)) {
-        background = program("fullscreen.vert",
-                             {"view.glsl", "lookup.glsl", "maps.glsl", "background_probe.frag"});
+        background = program({"view.glsl", "lookup.glsl", "maps.glsl", "background_probe.frag"});
     } else if (image) {
-        background = program("fullscreen.vert", {"background_image.frag"});
+        background = program({"background_image.frag"});
     }
-    resolve = program("fullscreen.vert", {"resolve.frag"});
-    if (options.samples > 1) accumulate = program("fullscreen.vert", {"accumulate.frag"});
+    resolve = program({"resolve.frag"});
+    if (options.samples > 1) accumulate = program({"accumulate.frag"});
     // Each sample goes into the sum by the weight 2^-k, where 2^k >= samples.
     const double weight = std::exp2(-std::ceil(std::log2(options.samples)));
     if (accumulate) setUniform(accumulate, "weight", weight);
     setUniform(resolve, "sum_weight", weight * options.samples);
+    setMaterial(scene.material);
+    place(scene.turn, scene.placement);
 }
 
-void Renderer::State::setMaterial(const Material& material) const {
+void Renderer::State::place(const Turn& turn, const Placement& placement) {
+    similarity = similarityOf(placement, extent);
+    const M33d probe_from_world = turnMatrix(turn).transposed();
+    setUniform(surface, "probe_from_world", probe_from_world);
+    if (background) setUniform(background, "probe_from_world", probe_from_world);
+}
+
+void Renderer::State::setMaterial(const Material& of_object) {
+    material = of_object;
     for (const Parameter parameter : shaderInfo(material.shader).parameters) {
         const ParameterInfo& info = parameterInfo(parameter);
         std::string uniform(info.name);
@@ -154,28 +206,57 @@ void Renderer::State::drawFullscreen(const Program& program) const {
     glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
-void Renderer::State::drawSphere(const CameraRays& rays, const V2i& tile) const {
-    setUniform(surface, "eye", rays.eye);
-    setUniform(surface, "moment_forward", rays.eye.cross(rays.forward));
-    setUniform(surface, "moment_x", rays.eye.cross(rays.step_x));
-    setUniform(surface, "moment_y", rays.eye.cross(rays.step_y));
-    const PixelRect rect = unitSphereRect(rays, options.width, options.height);
+// The camera is brought to the unit sphere; directions stay as they are.
+void Renderer::State::drawSphere(const Program& program, const CameraRays& rays,
+                                 const V2i& tile) const {
+    CameraRays brought = rays;
+    brought.eye = (rays.eye - similarity.shift) / similarity.scale;
+    setUniform(program, "sphere_eye", brought.eye);
+    setUniform(program, "moment_forward", brought.eye.cross(rays.forward));
+    setUniform(program, "moment_x", brought.eye.cross(rays.step_x));
+    setUniform(program, "moment_y", brought.eye.cross(rays.step_y));
+    setUniform(program, "sphere_radius", similarity.scale);
+    setUniform(program, "object_from_world", similarity.turn.transposed());
+    const PixelRect rect = unitSphereRect(brought, options.width, options.height);
     glScissor(rect.min.x - tile.x, rect.min.y - tile.y, rect.max.x - rect.min.x,
               rect.max.y - rect.min.y);
     glEnable(GL_SCISSOR_TEST);
     glDepthRange(0, 0); // whatever the triangle's depth is: the background stays behind
-    drawFullscreen(surface);
+    drawFullscreen(program);
     glDepthRange(0, 1);
     glDisable(GL_SCISSOR_TEST);
 }
 
-void Renderer::State::drawMesh(const CameraRays& rays, const V2d& jitter) const {
+void Renderer::State::drawMesh(const Program& program, const CameraRays& rays,
+                               const V2d& jitter) const {
+    const M44d world_from_object = matrixOf(similarity);
+    Box3f box; // in the world
+    for (int corner = 0; corner < 8; ++corner) {
+        const Box3f& b = extent.box;
+        const V3d p(corner & 1 ? b.max.x : b.min.x, corner & 2 ? b.max.y : b.min.y,
+                    corner & 4 ? b.max.z : b.min.z);
+        box.extendBy(V3f(similarity.point(p)));
+    }
     const auto clip_from_world = clipFromWorld(rays, box, jitter);
     if (!clip_from_world) return;
-    setUniform(surface, "clip_from_world", *clip_from_world);
-    glUseProgram(surface.id());
+    setUniform(program, "clip_from_object", world_from_object * *clip_from_world);
+    setUniform(program, "world_from_object", world_from_object);
+    glUseProgram(program.id());
     glBindVertexArray(mesh->array.id());
-    glDrawElements(GL_TRIANGLES, mesh->count, GL_UNSIGNED_INT, nullptr);
+    for (const Part& part : parts) {
+        bindSurface(surfaces, program, material, part.surface);
+        setUniform(program, "part_id", static_cast<double>(&part - parts.data() + 1));
+        glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(part.count), GL_UNSIGNED_INT,
+                       reinterpret_cast<const void*>(part.first * sizeof(std::uint32_t)));
+    }
+}
+
+void Renderer::State::drawObject(const Program& program, const CameraRays& rays, const V2i& tile,
+                                 const V2d& jitter) const {
+    if (mesh) return drawMesh(program, rays, jitter);
+    bindSurface(surfaces, program, material, parts[0].surface);
+    setUniform(program, "part_id", 1.0);
+    drawSphere(program, rays, tile);
 }
 
 // One sample a pixel of a tile. `jitter` is the sample's place from the pixel's centre. The
@@ -183,13 +264,6 @@ void Renderer::State::drawMesh(const CameraRays& rays, const V2d& jitter) const 
 void Renderer::State::drawSample(const CameraRays& rays, const V2i& tile, const V2d& jitter) const {
     glBindFramebuffer(GL_FRAMEBUFFER, to_sample.id());
     glViewport(-tile.x, -tile.y, options.width, options.height);
-    const V2d offset = V2d(tile) + jitter - rays.centre;
-    const auto setView = [&](const Program& program) {
-        setUniform(program, "pixel_offset", offset);
-        setUniform(program, "forward", rays.forward);
-        setUniform(program, "step_x", rays.step_x);
-        setUniform(program, "step_y", rays.step_y);
-    };
     if (!background) {
         const std::array<float, 4> color{clear_color.x, clear_color.y, clear_color.z,
                                          opaque ? 1.f : 0.f};
@@ -198,14 +272,10 @@ void Renderer::State::drawSample(const CameraRays& rays, const V2i& tile, const 
     const float far_depth = 1;
     glClearBufferfv(GL_DEPTH, 0, &far_depth);
     glEnable(GL_DEPTH_TEST);
-    setView(surface);
-    if (mesh) {
-        drawMesh(rays, jitter);
-    } else {
-        drawSphere(rays, tile);
-    }
+    setView(surface, rays, tile, jitter);
+    drawObject(surface, rays, tile, jitter);
     if (background) {
-        setView(background);
+        setView(background, rays, tile, jitter);
         setUniform(background, "tile_origin", tile);
         drawFullscreen(background);
     }
@@ -231,14 +301,9 @@ void Renderer::State::drawTile(const CameraRays& rays, const V2i& tile) const {
 void Renderer::State::drawFrame(const Camera& camera, Image& frame) {
     const CameraRays rays = cameraRays(camera, options.width, options.height);
     const V2i size = tileSize();
-    glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
-    glFrontFace(GL_CW);     // counter-clockwise, in a frame whose y is down
-    glDepthFunc(GL_LEQUAL); // the background stands at the far plane itself
-    glBlendFunc(GL_ONE, GL_ONE);
+    setUpDrawing(options.width);
     glBindTextureUnit(1, diffuse.texture.id());
     glBindTextureUnit(2, image.id());
-    glPixelStorei(GL_PACK_ROW_LENGTH, options.width);
-    glPixelStorei(GL_PACK_ALIGNMENT, 1);
     for (int y = 0; y < options.height; y += size.y) {
         for (int x = 0; x < options.width; x += size.x) {
             drawTile(rays, {x, y});
@@ -252,6 +317,44 @@ void Renderer::State::drawFrame(const Camera& camera, Image& frame) {
         }
     }
     checkGl("drawing the picture");
+}
+
+void Renderer::State::drawAovs(const Camera& camera, FrameAovs& aovs) {
+    if (!aov) aov = surfaceProgram("aov.frag");
+    const CameraRays rays = cameraRays(camera, options.width, options.height);
+    const V2i size = tileSize();
+    const Texture normals = makeTexture(GL_TEXTURE_2D, GL_RGBA32F, size.x, size.y);
+    const Texture others = makeTexture(GL_TEXTURE_2D, GL_RG32F, size.x, size.y);
+    const Framebuffer target = makeFramebuffer(normals, depth.id());
+    glNamedFramebufferTexture(target.id(), GL_COLOR_ATTACHMENT1, others.id(), 0);
+    const std::array<GLenum, 2> outputs{GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
+    glNamedFramebufferDrawBuffers(target.id(), 2, outputs.data());
+    setUpDrawing(options.width);
+    const std::array<float, 4> nothing{0, 0, 0, 0}, far_away{kNoDepth, 0, 0, 0};
+    const float far_depth = 1;
+    for (int y = 0; y < options.height; y += size.y) {
+        for (int x = 0; x < options.width; x += size.x) {
+            glBindFramebuffer(GL_FRAMEBUFFER, target.id());
+            glViewport(-x, -y, options.width, options.height);
+            glClearBufferfv(GL_COLOR, 0, nothing.data());
+            glClearBufferfv(GL_COLOR, 1, far_away.data());
+            glClearBufferfv(GL_DEPTH, 0, &far_depth);
+            glEnable(GL_DEPTH_TEST);
+            setView(aov, rays, {x, y}, V2d(0));
+            drawObject(aov, rays, {x, y}, V2d(0));
+            glDisable(GL_DEPTH_TEST);
+            const auto read = [&](GLenum output, GLenum format, float* to) {
+                glReadBuffer(output);
+                glReadPixels(0, 0, std::min(size.x, options.width - x),
+                             std::min(size.y, options.height - y), format, GL_FLOAT, to);
+            };
+            const std::size_t first = static_cast<std::size_t>(y) * options.width + x;
+            read(GL_COLOR_ATTACHMENT0, GL_RGB, aovs.normal.at(x, y));
+            read(GL_COLOR_ATTACHMENT1, GL_RED, aovs.depth.data() + first);
+            read(GL_COLOR_ATTACHMENT1, GL_GREEN, aovs.id.data() + first);
+        }
+    }
+    checkGl("drawing normals, depth and ids");
 }
 
 Renderer::Renderer(const EglContext&, const Scene& scene, const FrameOptions& options)
@@ -274,10 +377,23 @@ Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
+void Renderer::change(const Material& material, const Turn& turn, const Placement& placement) {
+    state_->setMaterial(material);
+    state_->place(turn, placement);
+}
+
 Image Renderer::render(const Camera& camera) {
     Image frame(state_->options.width, state_->options.height, state_->opaque ? 3 : 4);
     state_->drawFrame(camera, frame);
     return frame;
+}
+
+FrameAovs Renderer::renderAovs(const Camera& camera) {
+    const int width = state_->options.width, height = state_->options.height;
+    const std::size_t pixels = static_cast<std::size_t>(width) * height;
+    FrameAovs aovs{Image(width, height), std::vector<float>(pixels), std::vector<float>(pixels)};
+    state_->drawAovs(camera, aovs);
+    return aovs;
 }
 
 } // namespace ibl

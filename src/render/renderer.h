@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <vector>
 
 namespace ibl {
 
@@ -18,6 +19,15 @@ struct FrameOptions {
     int samples = 16; ///< shaded samples a pixel; the picture is their mean (a box of one pixel)
     std::optional<std::filesystem::path> shader_folder; ///< replaces built-in shaders, file by file
 };
+
+/// What is known of a frame beside its colours, at the centre of each pixel: nothing of it is
+/// anti-aliased.
+struct FrameAovs {
+    Image normal;             ///< unit, in the world, turned to the eye; 0 where the object is not
+    std::vector<float> depth; ///< along the view; kNoDepth where the object is not
+    std::vector<float> id;    ///< the object's part, from 1; 0 where the object is not
+};
+constexpr float kNoDepth = 1e10F;
 
 /// A scene on the graphics device, ready to be drawn. The context must be current and outlive it.
 ///
@@ -31,8 +41,14 @@ public:
     Renderer(Renderer&&) noexcept;
     Renderer& operator=(Renderer&&) noexcept;
 
+    /// Gives the scene other values of its shader's parameters, another turn of the probe and
+    /// another place of the object, without another upload.
+    void change(const Material& material, const Turn& turn, const Placement& placement);
+
     /// Scene-linear pixels: RGBA, premultiplied, when the scene has no background, otherwise RGB.
     Image render(const Camera& camera);
+
+    FrameAovs renderAovs(const Camera& camera);
 
 private:
     struct State;

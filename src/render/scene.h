@@ -5,6 +5,7 @@
 #include "panorama/panorama.h"
 #include "render/material.h"
 #include "render/mesh.h"
+#include "render/placement.h"
 
 #include <variant>
 
@@ -25,6 +26,8 @@ struct Scene {
     Object object;
     Material material;
     Background background;
+    Turn turn; ///< of the probe, with all maps made of it
+    Placement placement;
 };
 
 /// Whether the scene needs the probe's radiance, and its diffuse map, to be drawn.
