@@ -80,7 +80,7 @@ TEST(Turn, ProbeObjectAndCameraTurnedTogetherLookTheSame) {
         const Image after =
             draw(scene, {turned(camera.eye), turned(camera.target), turned(camera.up), 40});
         EXPECT_LT(difference(before, after), 0.02) << name;
-        scene.turn = {};
+        scene.placement = {}; // the probe alone is turned
         EXPECT_GT(difference(before, draw(scene, camera)), 0.1) << name; // it does see turns
     }
 }
