@@ -254,9 +254,9 @@ TEST(Render, FocalLengthIsOfTheSensorsWidth) {
         ASSERT_NEAR(a.pixels[i], b.pixels[i], 1e-3 * (1 + b.pixels[i]));
 }
 
-TEST(Render, BaseTextureIsSeenFromOutsideAndDecoded) {
+TEST(Render, BaseTextureOfIntegersIsDecoded) {
     const Scratch scratch;
-    // Left half black, right half linear 0.5, by a background and a camera that sees nothing else.
+    // All linear 0.5: a background, and a camera that sees nothing else.
     render(scratch,
            {"--probe", "builtin:furnace", "--background", "0.5,0.5,0.5", "--eye", "0,0,9",
             "--target", "0,0,18", "--size", "16x8"},
