@@ -5,7 +5,6 @@
 #include "lights/light.h"
 
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -45,26 +44,5 @@ LightHarmonics probeHarmonics(const Image& latlong, int degree, int threads);
 
 /// Of lights, as points; exact but for rounding.
 LightHarmonics lightHarmonics(const std::vector<Light>& lights, int degree, int threads);
-
-/// P_mm's factor and the recurrence's, for m = 0 .. degree + 1:
-///     P_lm = a_lm (x P_(l-1)m - b_lm P_(l-2)m),
-///     a = sqrt((4 l^2 - 1) / (l^2 - m^2)), b = sqrt(((l-1)^2 - m^2) / (4 (l-1)^2 - 1)).
-/// `next` is called for l = m, m + 1, ... degree with P_lm at every point; `x` holds cos theta,
-/// `sectoral` P_mm at every point. Values whose P_mm underflows are negligible up to degree 128.
-template <class Value, class Next>
-void legendreColumn(int m, int degree, const Value& x, const Value& sectoral, Next next) {
-    Value before{}, now = sectoral;
-    double b = 0;
-    for (int l = m;; ++l) {
-        next(l, now);
-        if (l == degree) return;
-        const double n = l + 1.0;
-        const double a = std::sqrt((4 * n * n - 1) / (n * n - m * m));
-        const Value after = a * (x * now - b * before);
-        b = 1 / a;
-        before = now;
-        now = after;
-    }
-}
 
 } // namespace ibl

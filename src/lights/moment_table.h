@@ -2,11 +2,9 @@
 #pragma once
 
 #include "image/image.h"
-#include "lights/summed_area.h"
+#include "lights/prefix_table.h"
 
-#include <array>
 #include <cstdint>
-#include <vector>
 
 namespace ibl {
 
@@ -15,30 +13,34 @@ namespace ibl {
 class MomentTable {
 public:
     /// Energy, then the moments x, y, z, in units of 2^-62 of the probe's energy.
-    using Sums = std::array<std::int64_t, 4>;
+    struct Sums {
+        std::int64_t parts[4];
+    };
 
     /// As SummedAreaTable; takes 32 bytes a pixel.
     MomentTable(const Image& latlong, int threads);
 
-    int width() const { return width_; }
-    int height() const { return height_; }
+    int width() const { return table_.width(); }
+    int height() const { return table_.height(); }
 
-    Sums sums(const PixelRegion& region) const;
-    std::int64_t energy(const PixelRegion& region) const { return sums(region)[0]; }
+    std::int64_t energy(const PixelRegion& region) const { return table_.sum(region).parts[0]; }
 
     /// Sum of luminance times squared distance from the region's centroid, in table units:
     /// W - |M|^2 / W, with W the energy and M the moment, since directions have length 1.
     double variance(const PixelRegion& region) const;
 
 private:
-    const Sums& corner(int x, int y) const {
-        return sums_[static_cast<std::size_t>(y) * (static_cast<std::size_t>(width_) + 1) +
-                     static_cast<std::size_t>(x)];
-    }
-
-    int width_;
-    int height_;
-    std::vector<Sums, UninitialisedAllocator<Sums>> sums_; ///< (height + 1)(width + 1)
+    PrefixTable<Sums> table_;
 };
+
+inline MomentTable::Sums operator+(const MomentTable::Sums& a, const MomentTable::Sums& b) {
+    return {a.parts[0] + b.parts[0], a.parts[1] + b.parts[1], a.parts[2] + b.parts[2],
+            a.parts[3] + b.parts[3]};
+}
+
+inline MomentTable::Sums operator-(const MomentTable::Sums& a, const MomentTable::Sums& b) {
+    return {a.parts[0] - b.parts[0], a.parts[1] - b.parts[1], a.parts[2] - b.parts[2],
+            a.parts[3] - b.parts[3]};
+}
 
 } // namespace ibl
