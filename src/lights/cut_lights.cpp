@@ -35,12 +35,13 @@ LitTree withLit(CutTree&& tree, const Table& table) {
     return result;
 }
 
-LitTree cutProbe(const Image& latlong, LightMethod method, int count, int threads) {
+LitTree cutProbe(const Image& latlong, double lit_energy, LightMethod method, int count,
+                 int threads) {
     if (method == LightMethod::variance) {
-        const MomentTable table(latlong, threads);
+        const MomentTable table(latlong, lit_energy, threads);
         return withLit(varianceCut(table, count), table);
     }
-    const SummedAreaTable table(latlong, threads);
+    const SummedAreaTable table(latlong, lit_energy, threads);
     return withLit(medianCut(table, count), table);
 }
 
@@ -122,10 +123,10 @@ std::optional<LightSet> firstWithin(const Search& s) {
 
 LightSet fewestLights(const Image& latlong, const LightRequest& request, int threads) {
     for (int most = 64;; most = std::min(kMostLights, 8 * most)) {
-        const LitTree cuts = cutProbe(latlong, request.method, most, threads);
+        const auto [probe, lit_energy] = sumProbe(latlong, harmonicDegree(most), threads);
+        const LitTree cuts = cutProbe(latlong, lit_energy, request.method, most, threads);
         if (!cuts.is_lit[0]) return {};
         const std::vector<RegionSums> sums = allSums(latlong, cuts.tree, threads);
-        const LightHarmonics probe = probeHarmonics(latlong, harmonicDegree(most), threads);
         if (auto set = firstWithin({latlong, request, cuts, sums, probe, threads})) return *set;
         const auto lit = [&] {
             const std::vector<int> leaves = leavesOf(cuts.tree, cuts.tree.cut.size());
@@ -146,8 +147,8 @@ LightSet fewestLights(const Image& latlong, const LightRequest& request, int thr
     }
 }
 
-LightSet byImportance(const Image& latlong, int count, int threads) {
-    const SummedAreaTable table(latlong, threads);
+LightSet byImportance(const Image& latlong, double lit_energy, int count, int threads) {
+    const SummedAreaTable table(latlong, lit_energy, threads);
     LightSet set;
     set.lights = importanceLights(latlong, table, count, threads);
     return set;
@@ -192,15 +193,15 @@ LightSet cutLights(const Image& latlong, const LightRequest& request, int thread
     if (request.max_error) {
         set = fewestLights(latlong, request, threads);
     } else {
+        const auto [probe, lit_energy] = sumProbe(latlong, harmonicDegree(request.count), threads);
         if (request.method == LightMethod::importance) {
-            set = byImportance(latlong, request.count, threads);
+            set = byImportance(latlong, lit_energy, request.count, threads);
         } else {
-            const LitTree cuts = cutProbe(latlong, request.method, request.count, threads);
+            const LitTree cuts =
+                cutProbe(latlong, lit_energy, request.method, request.count, threads);
             const std::vector<RegionSums> sums = allSums(latlong, cuts.tree, threads);
             set.lights = lightsAfter(cuts, sums, cuts.tree.cut.size(), latlong, request.placement);
         }
-        const LightHarmonics probe =
-            probeHarmonics(latlong, harmonicDegree(request.count), threads);
         set.irradiance_error = errorOf(set.lights, probe, threads);
         const bool same_count =
             request.previous && request.previous->lights.size() == set.lights.size();
@@ -220,9 +221,9 @@ LightSet cutLights(const Image& latlong, const LightRequest& request, int thread
 
 double lampError(const Image& probe, const Image& residual, const Light& lamp, int threads) {
     const int degree = harmonicDegree(1);
-    const LightHarmonics whole = probeHarmonics(probe, degree, threads);
+    const LightHarmonics whole = sumProbe(probe, degree, threads).harmonics;
     LightHarmonics difference = whole;
-    difference -= probeHarmonics(residual, degree, threads);
+    difference -= sumProbe(residual, degree, threads).harmonics;
     difference -= lightHarmonics({lamp}, degree, threads);
     return irradianceError(whole, difference);
 }

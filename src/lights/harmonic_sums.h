@@ -14,10 +14,10 @@ struct HarmonicSources {
     explicit HarmonicSources(std::size_t count);
 
     std::size_t size;
-    std::vector<double> x, sine;        ///< cos and sin of theta; of unused places 0
-    std::vector<double> sectoral;       ///< P_mm; at first for m = 0
-    std::vector<double> wave[6];        ///< of unused places 0
-    std::vector<double> now, before;    ///< room for the recurrence
+    std::vector<double> x, sine;     ///< cos and sin of theta; of unused places 0
+    std::vector<double> sectoral;    ///< P_mm; at first for m = 0
+    std::vector<double> wave[6];     ///< of unused places 0
+    std::vector<double> now, before; ///< room for the recurrence
 };
 
 /// Adds sum P_lm(x) wave over the sources to `even` for l = m or m + 1, whichever is even, to

@@ -40,7 +40,14 @@ int harmonicDegree(int count);
 /// of 8 degree x 4 degree points by the adjoint of cubic interpolation, so the cost is a few
 /// operations a pixel. Relative error of a coefficient at most 0.02 (2 pi l / (8 degree))^4, i.e.
 /// 1e-8 at l = 2 and 1e-2 at l = degree = 64, where Lambert's kernel has fallen to 1e-4.
-LightHarmonics probeHarmonics(const Image& latlong, int degree, int threads);
+///
+/// The probe's energy comes along, since reading a large probe's pixels once more costs as much as
+/// adding them up.
+struct ProbeSums {
+    LightHarmonics harmonics;
+    double lit_energy; ///< as litEnergy()
+};
+ProbeSums sumProbe(const Image& latlong, int degree, int threads);
 
 /// Of lights, as points; exact but for rounding.
 LightHarmonics lightHarmonics(const std::vector<Light>& lights, int degree, int threads);

@@ -3,7 +3,6 @@
 #include "core/parallel.h"
 #include "lights/lit_lanes.h"
 #include "lights/pixel_moments.h"
-#include "lights/summed_area.h"
 
 #include <algorithm>
 #include <cmath>
@@ -43,11 +42,10 @@ void addMomentRow(const float* rgb, const ColumnMoments& columns, const double (
 
 } // namespace
 
-MomentTable::MomentTable(const Image& latlong, int threads)
+MomentTable::MomentTable(const Image& latlong, double lit_energy, int threads)
     : table_(latlong.width, latlong.height) {
     const int width = latlong.width, height = latlong.height;
-    const double total = litEnergy(latlong, threads);
-    const double scale = total > 0 ? std::ldexp(1.0, 62) / total : 0.0;
+    const double scale = lit_energy > 0 ? std::ldexp(1.0, 62) / lit_energy : 0.0;
     const ColumnMoments columns = columnMoments(width);
     parallelFor(static_cast<std::size_t>(table_.bands()), threads, [&](std::size_t band) {
         table_.fillBand(static_cast<int>(band), [&](int j, const Sums* above, Sums* below) {

@@ -18,7 +18,7 @@ public:
     };
 
     /// As SummedAreaTable; takes 32 bytes a pixel.
-    MomentTable(const Image& latlong, int threads);
+    MomentTable(const Image& latlong, double lit_energy, int threads);
 
     int width() const { return table_.width(); }
     int height() const { return table_.height(); }

@@ -61,7 +61,8 @@ public:
 
     Sum sum(const PixelRegion& r) const {
         const int x1 = r.x + r.width;
-        return x1 <= width_ ? columns(r, r.x, x1) : columns(r, r.x, width_) + columns(r, 0, x1 - width_);
+        return x1 <= width_ ? columns(r, r.x, x1)
+                            : columns(r, r.x, width_) + columns(r, 0, x1 - width_);
     }
 
 private:

@@ -6,9 +6,11 @@
 #include "core/parallel.h"
 #include "lights/harmonic_sums.h"
 #include "lights/lit_lanes.h"
+#include "lights/summed_area.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace ibl {
 namespace {
@@ -115,6 +117,21 @@ void spreadColumns(const float* line, const std::vector<ColumnTap>& columns, flo
     }
 }
 
+/// A row of the grid, four floats a column, after one that is not part of it.
+std::vector<float> gridRow(const Image& probe, const std::vector<RowTap>& rows,
+                           const std::vector<ColumnTap>& columns, int grid_columns) {
+    std::vector<float> line(probe.rowFloats() + 1, 0.f);
+    addRows(probe, rows, line.data());
+    const std::size_t around = 4 * static_cast<std::size_t>(grid_columns);
+    std::vector<float> ring(around + 16, 0.f);
+    spreadColumns(line.data(), columns, ring.data());
+    for (std::size_t k = 0; k < 4; ++k)
+        ring[around + k] += ring[k];
+    for (std::size_t k = 4; k < 16; ++k)
+        ring[k] += ring[around + k];
+    return ring;
+}
+
 /// cos and sin of m psi_c for c = 0 .. columns / 4, m fastest, `waves` of them a column.
 struct WaveTable {
     int waves; ///< degree + 1, rounded up to whole vectors
@@ -140,7 +157,7 @@ WaveTable waveTable(int degree, int columns) {
 /// Columns half a turn apart differ by the sign (-1)^m, and those mirrored at a quarter turn by the
 /// sign of cosine or sine: a quarter of them is left.
 struct Folded {
-    std::array<double, 2> cosine[3], sine[3]; ///< by channel, for even and for odd m
+    std::array<double, kLanes> cosine[3], sine[3]; ///< by channel, for even and odd m in turn
 };
 
 std::vector<Folded> fold(const float* grid, int columns) {
@@ -155,8 +172,12 @@ std::vector<Folded> fold(const float* grid, int columns) {
             const double plus_d = alone ? 0 : at(d) + at(d + half);
             const double minus_d = alone ? 0 : at(d) - at(d + half);
             Folded& f = folded[static_cast<std::size_t>(c)];
-            f.cosine[channel] = {plus + plus_d, minus - minus_d};
-            f.sine[channel] = {plus - plus_d, minus + minus_d};
+            const double cosines[2] = {plus + plus_d, minus - minus_d};
+            const double sines[2] = {plus - plus_d, minus + minus_d};
+            for (std::size_t k = 0; k < kLanes; ++k) {
+                f.cosine[channel][k] = cosines[k % 2];
+                f.sine[channel][k] = sines[k % 2];
+            }
         }
     }
     return folded;
@@ -171,9 +192,8 @@ void waves(const WaveTable& table, const std::vector<Folded>& folded, double* ou
             const std::size_t at = c * static_cast<std::size_t>(table.waves) + m;
             const Lanes cosine = loadLanes(&table.cosine[at]), sine = loadLanes(&table.sine[at]);
             for (std::size_t k = 0; k < 3; ++k) {
-                const auto &x = folded[c].cosine[k], &y = folded[c].sine[k];
-                sums[2 * k] += Lanes{x[0], x[1], x[0], x[1]} * cosine;
-                sums[2 * k + 1] -= Lanes{y[0], y[1], y[0], y[1]} * sine;
+                sums[2 * k] += loadLanes(folded[c].cosine[k].data()) * cosine;
+                sums[2 * k + 1] -= loadLanes(folded[c].sine[k].data()) * sine;
             }
         }
         for (int k = 0; k < 6; ++k)
@@ -193,26 +213,25 @@ struct GridWaves {
     }
 };
 
-GridWaves gridWaves(const Image& probe, int degree, int threads) {
+/// `lit_rows` gets the energy of each row of the probe.
+GridWaves gridWaves(const Image& probe, int degree, int threads, std::vector<double>& lit_rows) {
     const WaveTable table = waveTable(degree, 8 * degree);
     GridWaves grid{4 * degree, 8 * degree, table.waves, {}};
     const int all_rows = grid.rows + 2 * kMargin;
     grid.values.resize(static_cast<std::size_t>(all_rows) * 6 * grid.waves);
     const auto rows = rowTaps(probe.height, grid.rows);
     const auto columns = columnTaps(probe.width, grid.columns);
-    parallelForRuns(static_cast<std::size_t>(all_rows), 4, threads, [&](std::size_t begin,
-                                                                        std::size_t end) {
-        for (std::size_t r = begin; r < end; ++r) {
-            std::vector<float> line(probe.rowFloats() + 1, 0.f);
-            addRows(probe, rows[r], line.data());
-            std::vector<float> ring(4 * static_cast<std::size_t>(grid.columns + 4), 0.f);
-            spreadColumns(line.data(), columns, ring.data());
-            const std::size_t around = 4 * static_cast<std::size_t>(grid.columns);
-            for (std::size_t k = 0; k < 4; ++k)
-                ring[around + k] += ring[k];
-            for (std::size_t k = 4; k < 16; ++k)
-                ring[k] += ring[around + k];
-            waves(table, fold(ring.data() + 4, grid.columns), grid.at(static_cast<int>(r), 0));
+    constexpr int kRun = 4;
+    const int runs = (all_rows + kRun - 1) / kRun;
+    parallelFor(static_cast<std::size_t>(runs), threads, [&](std::size_t index) {
+        const int run = static_cast<int>(index);
+        // About the rows that the run takes from, so that they are in the cache.
+        for (long j = long{run} * probe.height / runs; j < (run + 1L) * probe.height / runs; ++j)
+            lit_rows[static_cast<std::size_t>(j)] = litEnergyOfRow(probe, static_cast<int>(j));
+        for (int r = run * kRun; r < std::min(all_rows, (run + 1) * kRun); ++r) {
+            const auto ring =
+                gridRow(probe, rows[static_cast<std::size_t>(r)], columns, grid.columns);
+            waves(table, fold(ring.data() + 4, grid.columns), grid.at(r, 0));
         }
     });
     return grid;
@@ -266,14 +285,14 @@ void addRowPairs(GridWaves& grid, const std::vector<double>& pixel, int begin, i
 
 } // namespace
 
-LightHarmonics probeHarmonics(const Image& latlong, int degree, int threads) {
-    GridWaves grid = gridWaves(latlong, degree, threads);
+ProbeSums sumProbe(const Image& latlong, int degree, int threads) {
+    std::vector<double> lit_rows(static_cast<std::size_t>(latlong.height));
+    GridWaves grid = gridWaves(latlong, degree, threads, lit_rows);
     foldMargins(grid);
     std::vector<double> pixel; // a pixel's extent in psi, for each wave
     for (int m = 0; m <= degree; ++m) {
         const double half_angle = kPi * m / latlong.width;
-        pixel.push_back(2 * kPi / latlong.width *
-                        (m == 0 ? 1 : std::sin(half_angle) / half_angle));
+        pixel.push_back(2 * kPi / latlong.width * (m == 0 ? 1 : std::sin(half_angle) / half_angle));
     }
     constexpr int kRun = 32;
     const int half = grid.rows / 2, runs = (half + kRun - 1) / kRun;
@@ -282,9 +301,9 @@ LightHarmonics probeHarmonics(const Image& latlong, int degree, int threads) {
         const int begin = static_cast<int>(run) * kRun;
         addRowPairs(grid, pixel, begin, std::min(half, begin + kRun), parts[run]);
     });
-    LightHarmonics total(degree);
+    ProbeSums total{LightHarmonics(degree), std::accumulate(lit_rows.begin(), lit_rows.end(), 0.0)};
     for (const LightHarmonics& part : parts)
-        total += part;
+        total.harmonics += part;
     return total;
 }
 

@@ -43,6 +43,13 @@ IBL_INLINE void addColumns(const float* row, const ColumnMoments& columns, int b
     addPixels(lastPixelLanes(row + 3 * i, end - i), loadLanes(last[0]), loadLanes(last[1]), sums);
 }
 
+IBL_INLINE void fetchAhead(const float* row, const PixelRegion& r, int width) {
+    constexpr int kStep = 16; // floats in a cache line
+    const int end = 3 * std::min(width, r.x + r.width);
+    for (int i = 3 * r.x; i < end; i += kStep)
+        __builtin_prefetch(row + i);
+}
+
 IBL_MULTIVERSION
 void addRegion(const Image& latlong, const Moments& moments, const PixelRegion& r,
                RegionSums& sums) {
@@ -52,6 +59,8 @@ void addRegion(const Image& latlong, const Moments& moments, const PixelRegion& 
     for (int j = r.y; j < r.y + r.height; ++j) {
         const RowMoments& row = moments.rows[static_cast<std::size_t>(j)];
         const float* pixels = latlong.row(j);
+        // Narrow regions jump from row to row, which the machine does not foresee.
+        if (j + 2 < r.y + r.height) fetchAhead(latlong.row(j + 2), r, width);
         LaneSums line;
         addColumns(pixels, moments.columns, r.x, std::min(width, r.x + r.width), line);
         addColumns(pixels, moments.columns, 0, r.x + r.width - width, line);

@@ -5,6 +5,7 @@
 #include "panorama/conventions.h"
 
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 namespace ibl {
@@ -52,32 +53,28 @@ void addEnergyRow(const float* rgb, int width, double weight, const std::int64_t
 
 } // namespace
 
-double litEnergy(const Image& latlong, int threads) {
-    std::vector<double> rows(static_cast<std::size_t>(latlong.height));
-    parallelForRuns(rows.size(), 16, threads, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t j = begin; j < end; ++j) {
-            const int row = static_cast<int>(j);
-            rows[j] = litRow(latlong.row(row), latlong.width) *
-                      latlongPixelSolidAngle(latlong.width, latlong.height, row);
-        }
-    });
-    double total = 0;
-    for (const double row : rows)
-        total += row;
-    return total;
+double litEnergyOfRow(const Image& latlong, int row) {
+    return litRow(latlong.row(row), latlong.width) *
+           latlongPixelSolidAngle(latlong.width, latlong.height, row);
 }
 
-SummedAreaTable::SummedAreaTable(const Image& latlong, int threads)
-    : table_(latlong.width, latlong.height) {
-    const double total = litEnergy(latlong, threads);
-    if (total > 0) scale_ = std::ldexp(1.0, 62) / total;
+double litEnergy(const Image& latlong, int threads) {
+    std::vector<double> rows(static_cast<std::size_t>(latlong.height));
+    parallelFor(rows.size(), threads,
+                [&](std::size_t j) { rows[j] = litEnergyOfRow(latlong, static_cast<int>(j)); });
+    return std::accumulate(rows.begin(), rows.end(), 0.0);
+}
+
+SummedAreaTable::SummedAreaTable(const Image& latlong, double lit_energy, int threads)
+    : table_(latlong.width, latlong.height),
+      scale_(lit_energy > 0 ? std::ldexp(1.0, 62) / lit_energy : 0.0) {
     parallelFor(static_cast<std::size_t>(table_.bands()), threads, [&](std::size_t band) {
-        table_.fillBand(static_cast<int>(band), [&](int j, const std::int64_t* above,
-                                                    std::int64_t* below) {
-            addEnergyRow(latlong.row(j), latlong.width,
-                         scale_ * latlongPixelSolidAngle(latlong.width, latlong.height, j), above,
-                         below);
-        });
+        table_.fillBand(
+            static_cast<int>(band), [&](int j, const std::int64_t* above, std::int64_t* below) {
+                addEnergyRow(latlong.row(j), latlong.width,
+                             scale_ * latlongPixelSolidAngle(latlong.width, latlong.height, j),
+                             above, below);
+            });
     });
     table_.addUpBands();
 }

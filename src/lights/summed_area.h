@@ -8,7 +8,9 @@
 
 namespace ibl {
 
-/// The probe's luminance times solid angle over the sphere, negative luminances as 0.
+/// Luminance times solid angle of a row of pixels, and of the whole probe (the rows' added from the
+/// top), negative luminances as 0.
+double litEnergyOfRow(const Image& latlong, int row);
 double litEnergy(const Image& latlong, int threads);
 
 /// Sums of luminance times solid angle over rectangles.
@@ -19,9 +21,9 @@ double litEnergy(const Image& latlong, int threads);
 /// rounded to 2e-19 of the total. Integer sums do not depend on their order either.
 class SummedAreaTable {
 public:
-    /// `latlong` has three channels and finite pixels. Negative luminances count as 0. Takes
-    /// 8 bytes a pixel.
-    SummedAreaTable(const Image& latlong, int threads);
+    /// `latlong` has three channels and finite pixels, `lit_energy` is its litEnergy(). Negative
+    /// luminances count as 0. Takes 8 bytes a pixel.
+    SummedAreaTable(const Image& latlong, double lit_energy, int threads);
 
     int width() const { return table_.width(); }
     int height() const { return table_.height(); }
