@@ -3,6 +3,7 @@
 
 #include "image/image.h"
 #include "lights/light.h"
+#include "lights/summed_area.h"
 
 #include <array>
 #include <cstddef>
@@ -45,7 +46,7 @@ int harmonicDegree(int count);
 /// adding them up.
 struct ProbeSums {
     LightHarmonics harmonics;
-    double lit_energy; ///< as litEnergy()
+    LuminousEnergy energy;
 };
 ProbeSums sumProbe(const Image& latlong, int degree, int threads);
 

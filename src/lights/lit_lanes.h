@@ -38,10 +38,19 @@ IBL_INLINE PixelLanes lastPixelLanes(const float* rgb, int count) {
     return pixelLanes(pixels);
 }
 
+IBL_INLINE Lanes luminanceOf(const PixelLanes& p) {
+    return kLuminanceRed * p.red + kLuminanceGreen * p.green + kLuminanceBlue * p.blue;
+}
+
 /// litLuminance() of each pixel.
 IBL_INLINE Lanes litLuminance(const PixelLanes& p) {
-    const Lanes y = kLuminanceRed * p.red + kLuminanceGreen * p.green + kLuminanceBlue * p.blue;
+    const Lanes y = luminanceOf(p);
     return y > 0 ? y : Lanes{};
+}
+
+IBL_INLINE Lanes absoluteLuminance(const PixelLanes& p) {
+    const Lanes y = luminanceOf(p);
+    return y > 0 ? y : -y;
 }
 
 /// To the nearest integers, of magnitudes up to 2^62. With v = 2^32 high + low, a double of

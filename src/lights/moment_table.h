@@ -9,7 +9,9 @@
 namespace ibl {
 
 /// Sums over rectangles of luminance times solid angle and of luminance times the integral of the
-/// direction, held as integers like `SummedAreaTable`'s and for the same reason.
+/// direction, held as integers like `SummedAreaTable`'s and for the same reason. Negative
+/// luminances count by their magnitude: a codec's ringing beside a sun can hold as much as the sky,
+/// and where it is not weighed it is never cut apart from the light around it.
 class MomentTable {
 public:
     /// Energy, then the moments x, y, z, in units of 2^-62 of the probe's energy.
@@ -17,11 +19,16 @@ public:
         std::int64_t parts[4];
     };
 
-    /// As SummedAreaTable; takes 32 bytes a pixel.
-    MomentTable(const Image& latlong, double lit_energy, int threads);
+    /// Of blocks of 2^shift x 2^shift pixels, the last ones smaller; takes 32 bytes a block.
+    /// `absolute_energy` is the probe's LuminousEnergy::absolute.
+    MomentTable(const Image& latlong, double absolute_energy, int shift, int threads);
 
+    /// In blocks, as all regions here.
     int width() const { return table_.width(); }
     int height() const { return table_.height(); }
+
+    /// A region of blocks as one of pixels.
+    PixelRegion pixels(const PixelRegion& blocks) const;
 
     std::int64_t energy(const PixelRegion& region) const { return table_.sum(region).parts[0]; }
 
@@ -30,6 +37,9 @@ public:
     double variance(const PixelRegion& region) const;
 
 private:
+    int pixel_width_;
+    int pixel_height_;
+    int shift_;
     PrefixTable<Sums> table_;
 };
 

@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace ibl {
 namespace {
@@ -213,8 +212,9 @@ struct GridWaves {
     }
 };
 
-/// `lit_rows` gets the energy of each row of the probe.
-GridWaves gridWaves(const Image& probe, int degree, int threads, std::vector<double>& lit_rows) {
+/// `energies` gets the energy of each row of the probe.
+GridWaves gridWaves(const Image& probe, int degree, int threads,
+                    std::vector<LuminousEnergy>& energies) {
     const WaveTable table = waveTable(degree, 8 * degree);
     GridWaves grid{4 * degree, 8 * degree, table.waves, {}};
     const int all_rows = grid.rows + 2 * kMargin;
@@ -227,7 +227,7 @@ GridWaves gridWaves(const Image& probe, int degree, int threads, std::vector<dou
         const int run = static_cast<int>(index);
         // About the rows that the run takes from, so that they are in the cache.
         for (long j = long{run} * probe.height / runs; j < (run + 1L) * probe.height / runs; ++j)
-            lit_rows[static_cast<std::size_t>(j)] = litEnergyOfRow(probe, static_cast<int>(j));
+            energies[static_cast<std::size_t>(j)] = luminousEnergyOfRow(probe, static_cast<int>(j));
         for (int r = run * kRun; r < std::min(all_rows, (run + 1) * kRun); ++r) {
             const auto ring =
                 gridRow(probe, rows[static_cast<std::size_t>(r)], columns, grid.columns);
@@ -286,8 +286,8 @@ void addRowPairs(GridWaves& grid, const std::vector<double>& pixel, int begin, i
 } // namespace
 
 ProbeSums sumProbe(const Image& latlong, int degree, int threads) {
-    std::vector<double> lit_rows(static_cast<std::size_t>(latlong.height));
-    GridWaves grid = gridWaves(latlong, degree, threads, lit_rows);
+    std::vector<LuminousEnergy> energies(static_cast<std::size_t>(latlong.height));
+    GridWaves grid = gridWaves(latlong, degree, threads, energies);
     foldMargins(grid);
     std::vector<double> pixel; // a pixel's extent in psi, for each wave
     for (int m = 0; m <= degree; ++m) {
@@ -301,7 +301,7 @@ ProbeSums sumProbe(const Image& latlong, int degree, int threads) {
         const int begin = static_cast<int>(run) * kRun;
         addRowPairs(grid, pixel, begin, std::min(half, begin + kRun), parts[run]);
     });
-    ProbeSums total{LightHarmonics(degree), std::accumulate(lit_rows.begin(), lit_rows.end(), 0.0)};
+    ProbeSums total{LightHarmonics(degree), luminousEnergy(energies)};
     for (const LightHarmonics& part : parts)
         total.harmonics += part;
     return total;

@@ -5,20 +5,22 @@
 #include "panorama/conventions.h"
 
 #include <cmath>
-#include <numeric>
-#include <vector>
 
 namespace ibl {
 namespace {
 
 IBL_MULTIVERSION
-double litRow(const float* rgb, int width) {
-    Lanes sum{};
+LuminousEnergy luminanceOfRow(const float* rgb, int width) {
+    Lanes lit{}, absolute{};
+    const auto add = [&](const PixelLanes& p) __attribute__((always_inline)) {
+        lit += litLuminance(p);
+        absolute += absoluteLuminance(p);
+    };
     int i = 0;
     for (; i + kLanes <= width; i += kLanes)
-        sum += litLuminance(pixelLanes(rgb + 3 * i));
-    if (i < width) sum += litLuminance(lastPixelLanes(rgb + 3 * i, width - i));
-    return sumOf(sum);
+        add(pixelLanes(rgb + 3 * i));
+    if (i < width) add(lastPixelLanes(rgb + 3 * i, width - i));
+    return {sumOf(lit), sumOf(absolute)};
 }
 
 /// Sums up to each of four values: shifted by one and added, then by two.
@@ -53,16 +55,27 @@ void addEnergyRow(const float* rgb, int width, double weight, const std::int64_t
 
 } // namespace
 
-double litEnergyOfRow(const Image& latlong, int row) {
-    return litRow(latlong.row(row), latlong.width) *
-           latlongPixelSolidAngle(latlong.width, latlong.height, row);
+LuminousEnergy luminousEnergyOfRow(const Image& latlong, int row) {
+    const LuminousEnergy sums = luminanceOfRow(latlong.row(row), latlong.width);
+    const double solid_angle = latlongPixelSolidAngle(latlong.width, latlong.height, row);
+    return {sums.lit * solid_angle, sums.absolute * solid_angle};
 }
 
-double litEnergy(const Image& latlong, int threads) {
-    std::vector<double> rows(static_cast<std::size_t>(latlong.height));
-    parallelFor(rows.size(), threads,
-                [&](std::size_t j) { rows[j] = litEnergyOfRow(latlong, static_cast<int>(j)); });
-    return std::accumulate(rows.begin(), rows.end(), 0.0);
+LuminousEnergy luminousEnergy(const std::vector<LuminousEnergy>& rows) {
+    LuminousEnergy total;
+    for (const LuminousEnergy& row : rows) {
+        total.lit += row.lit;
+        total.absolute += row.absolute;
+    }
+    return total;
+}
+
+LuminousEnergy luminousEnergy(const Image& latlong, int threads) {
+    std::vector<LuminousEnergy> rows(static_cast<std::size_t>(latlong.height));
+    parallelFor(rows.size(), threads, [&](std::size_t j) {
+        rows[j] = luminousEnergyOfRow(latlong, static_cast<int>(j));
+    });
+    return luminousEnergy(rows);
 }
 
 SummedAreaTable::SummedAreaTable(const Image& latlong, double lit_energy, int threads)
