@@ -142,6 +142,22 @@ TEST(MedianCut, CutsAreAsEvenAsPixelsAllow) {
     }
 }
 
+TEST(MedianCut, TheLongerSideIsMeasuredWhereTheLightIs) {
+    // All light in a band of rows: as long as its energy's parallel, 2 pi cos(latitude), against
+    // the height pi. At 70 degrees it is the shorter side, at 40 the longer, whatever the middle
+    // latitude of the region, 0, says.
+    for (const auto& [row, across] : {std::pair{14, false}, {36, true}}) {
+        Image image = filled(256, 128, 0.f);
+        for (int y = row - 1; y <= row + 1; ++y) {
+            for (int x = 0; x < 256; ++x)
+                setPixel(image, x, y, 1.f, 1.f, 1.f);
+        }
+        const auto regions =
+            medianRegions(SummedAreaTable(image, luminousEnergy(image, 1).lit, 1), 2);
+        EXPECT_EQ(regions[0].height == 128, across) << row;
+    }
+}
+
 TEST(MedianCut, OneLampIsFoundAtItsPixelsCentroid) {
     for (const auto& [x, y] : {std::pair{100, 40}, {0, 40}, {255, 127}, {7, 0}}) {
         Image image = filled(256, 128, 0.f);
