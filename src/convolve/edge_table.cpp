@@ -14,18 +14,14 @@ constexpr double kNodesPerUnit = 10;
 
 } // namespace
 
-struct EdgeTable::Cell {
-    int first;
-    double weight[4];
-};
-
 double EdgeTable::nodeAt(int i) const {
     return width_ * std::expm1(i * step_);
 }
 
 EdgeTable::EdgeTable(const std::function<double(double)>& mass_beyond, double width, double reach,
                      double extent)
-    : width_(width), reach_(reach), step_(1 / kNodesPerUnit),
+    : width_(width), reach_(reach), step_(1 / kNodesPerUnit), inverse_width_(1 / width),
+      inverse_step_(kNodesPerUnit),
       nodes_(static_cast<int>(std::log1p(extent / width) / step_) + 5) {
     const double all = mass_beyond(0);
     const auto beyond = [&](double r) { return r < reach ? mass_beyond(r) : 0.0; };
@@ -77,36 +73,6 @@ EdgeTable::EdgeTable(const std::function<double(double)>& mass_beyond, double wi
             flow_[a * n + b] = flow;
         }
     }
-}
-
-EdgeTable::Cell EdgeTable::cellOf(double x) const {
-    const double at = std::log(1 + x / width_) / step_;
-    const int first = std::clamp(static_cast<int>(at) - 1, 0, nodes_ - 4);
-    const double f = at - first; // 0 .. 3, nodes at 0 1 2 3
-    const double a = f, b = f - 1, c = f - 2, d = f - 3;
-    return {first, {-b * c * d / 6, a * c * d / 2, -a * b * d / 2, a * b * c / 6}};
-}
-
-double EdgeTable::lookUp(const std::vector<double>& table, const Cell& d, double s) const {
-    const Cell e = cellOf(std::abs(s));
-    const double* row = &table[static_cast<std::size_t>(d.first * nodes_ + e.first)];
-    double sum = 0;
-    for (int i = 0; i < 4; ++i, row += nodes_) {
-        sum += d.weight[i] * (e.weight[0] * row[0] + e.weight[1] * row[1] + e.weight[2] * row[2] +
-                              e.weight[3] * row[3]);
-    }
-    return s < 0 ? -sum : sum;
-}
-
-double EdgeTable::angle(double d, double from, double to) const {
-    const Cell cell = cellOf(std::abs(d));
-    const double difference = lookUp(angle_, cell, to) - lookUp(angle_, cell, from);
-    return d < 0 ? -difference : difference;
-}
-
-double EdgeTable::flow(double d, double from, double to) const {
-    const Cell cell = cellOf(std::abs(d));
-    return lookUp(flow_, cell, std::min(to, reach_)) - lookUp(flow_, cell, std::max(from, -reach_));
 }
 
 } // namespace ibl

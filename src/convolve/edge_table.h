@@ -17,6 +17,8 @@
 // log(1 + d / width) and log(1 + s / width).
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <vector>
 
@@ -30,17 +32,49 @@ public:
               double extent);
 
     /// A's difference between `from` and `to` on a line at the signed distance d.
-    double angle(double d, double from, double to) const;
+    double angle(double d, double from, double to) const {
+        const double result = difference(angle_, std::abs(d), from, to);
+        return d < 0 ? -result : result;
+    }
     /// B's difference, for |d| < reach.
-    double flow(double d, double from, double to) const;
+    double flow(double d, double from, double to) const {
+        return difference(flow_, std::abs(d), std::max(from, -reach_), std::min(to, reach_));
+    }
 
 private:
-    struct Cell;
+    struct Cell {
+        int first;
+        double weight[4];
+    };
     double nodeAt(int i) const;
-    Cell cellOf(double x) const;
-    double lookUp(const std::vector<double>& table, const Cell& d, double s) const;
 
-    double width_, reach_, step_;
+    Cell cellOf(double x) const {
+        const double at = std::log(1 + x * inverse_width_) * inverse_step_;
+        const int first = std::clamp(static_cast<int>(at) - 1, 0, nodes_ - 4);
+        const double a = at - first, b = a - 1, c = a - 2, d = a - 3; // from nodes 0 1 2 3
+        return {first,
+                {b * c * d * (-1.0 / 6), a * c * d * 0.5, a * b * d * -0.5, a * b * c * (1.0 / 6)}};
+    }
+
+    double lookUp(const double* table, const Cell& d, double s) const {
+        const Cell e = cellOf(std::abs(s));
+        double sum[4] = {0, 0, 0, 0};
+        for (int i = 0; i < 4; ++i) {
+            const double* row = table + (d.first + i) * nodes_ + e.first;
+            for (int k = 0; k < 4; ++k)
+                sum[k] += d.weight[i] * row[k];
+        }
+        const double value = e.weight[0] * sum[0] + e.weight[1] * sum[1] + e.weight[2] * sum[2] +
+                             e.weight[3] * sum[3];
+        return s < 0 ? -value : value;
+    }
+
+    double difference(const std::vector<double>& table, double d, double from, double to) const {
+        const Cell cell = cellOf(d);
+        return lookUp(table.data(), cell, to) - lookUp(table.data(), cell, from);
+    }
+
+    double width_, reach_, step_, inverse_width_, inverse_step_;
     int nodes_;
     std::vector<double> angle_, flow_; ///< [d][s]
 };

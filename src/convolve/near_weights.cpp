@@ -16,6 +16,10 @@ namespace {
 constexpr double kPiece = 0.015;
 /// Pixels this many times the texel's and the pixel's extent away are summed by points.
 constexpr double kFar = 2;
+/// Gauss points to a piece of a texel's edge, and the piece's length over the distance of the
+/// nearest end of a pixel's edge.
+constexpr int kFlowPoints = 4;
+constexpr double kFlowPiece = 1.5;
 
 double squaredSineAtDistance(double r2) { // of half the angle whose tangent is r
     return 0.5 * r2 / (1 + r2 + std::sqrt(1 + r2));
@@ -64,24 +68,23 @@ struct Block {
     }
 };
 
-/// A piece a b of an edge in a plane.
+/// A piece of a parallel, westwards, or of a meridian, southwards, in a plane: from a to b the pixel
+/// in the north or west lies on the left, x going to y.
 struct EdgePiece {
-    int before, after; ///< the pixels that it divides, -1 outside the block
-    V2d a, b;
-    bool origin_before; ///< whether the plane's origin lies on the side of `before`
+    int before, after; ///< the pixels on the left and on the right, -1 outside the block
+    bool parallel;
+    double line; ///< theta or psi
+    V2d a, along;
+    double length;
 };
 
-/// Calls visit(piece) for every piece of an edge of a near pixel within `radius` of the plane's
-/// origin: parallels westwards with the pixel in the north before them, meridians southwards with
-/// that in the west. From a to b `before` is on the left, x going to y.
-template <class Visit>
-void forEachEdge(const Block& block, const V3d& origin, double radius, const Visit& visit) {
+/// The pieces of the near pixels' edges that come within `radius` of the plane's origin.
+std::vector<EdgePiece> edgesAbout(const Block& block, const V3d& origin, double radius) {
+    std::vector<EdgePiece> edges;
     const Plane plane(origin);
     const NearWeights& w = block.weights;
-    const double theta0 = std::atan2(std::hypot(origin.x, origin.y), origin.z);
-    const double psi0 = std::atan2(origin.y, origin.x);
-    const auto along = [&](EdgePiece piece, double theta, double psi, double dtheta, double dpsi) {
-        if (!block.isNear(piece.before) && !block.isNear(piece.after)) return;
+    const auto add = [&](EdgePiece edge, double theta, double psi, double dtheta, double dpsi) {
+        if (!block.isNear(edge.before) && !block.isNear(edge.after)) return;
         const double length = std::max(std::abs(dtheta), std::abs(dpsi) * std::sin(theta));
         const int n = std::max(1, static_cast<int>(std::ceil(length / kPiece)));
         const double room = radius + length / n;
@@ -89,125 +92,141 @@ void forEachEdge(const Block& block, const V3d& origin, double radius, const Vis
         for (int k = 1; k <= n; ++k) {
             const V3d to = polarDirection(theta + dtheta * k / n, psi + dpsi * k / n);
             if ((from - origin).length2() < room * room) {
-                piece.a = plane(from);
-                piece.b = plane(to);
-                visit(piece);
+                edge.a = plane(from);
+                const V2d along = plane(to) - edge.a;
+                edge.length = along.length();
+                edge.along = along / std::max(edge.length, 1e-300);
+                if (edge.length > 0) edges.push_back(edge);
             }
             from = to;
         }
     };
     const double row_step = block.theta(1), column_step = block.psi(1);
     for (int j = 0; j <= w.rows; ++j) {
-        const double theta = block.theta(w.row + j);
-        if (std::abs(theta - theta0) > radius || w.row + j == 0 || w.row + j == block.field.height)
-            continue;
+        if (w.row + j == 0 || w.row + j == block.field.height) continue; // a pole
+        const double theta = block.theta(w.row + j), sin = std::sin(theta);
+        // Chords run up to half^2 sin cos / 2 nearer to the pole than the parallel, two thirds of
+        // that in the mean.
+        const double half = 0.5 * column_step / std::max(1.0, std::ceil(column_step * sin / kPiece));
+        const double chord = theta + half * half * sin * std::cos(theta) / 3;
         for (int i = 0; i < w.columns; ++i)
-            along({block.at(j - 1, i), block.at(j, i), {}, {}, theta0 < theta}, theta,
-                  block.psi(w.column + i + 1), 0, -column_step);
+            add({block.at(j - 1, i), block.at(j, i), true, theta, {}, {}, 0}, chord,
+                block.psi(w.column + i + 1), 0, -column_step);
     }
     const bool all_around = w.columns == block.field.width;
     for (int i = 0; i <= w.columns - (all_around ? 1 : 0); ++i) {
         const double psi = block.psi(w.column + i);
-        const bool west = std::remainder(psi0 - psi, 2 * kPi) < 0;
+        const int west = i == 0 && all_around ? w.columns - 1 : i - 1;
         for (int j = 0; j < w.rows; ++j)
-            along({block.at(j, i == 0 && all_around ? w.columns - 1 : i - 1), block.at(j, i), {},
-                   {}, west},
-                  block.theta(w.row + j), psi, row_step, 0);
+            add({block.at(j, west), block.at(j, i), false, psi, {}, {}, 0}, block.theta(w.row + j),
+                psi, row_step, 0);
     }
+    return edges;
 }
 
 /// Adds share * (the kernel's mass over each near pixel as seen from a direction).
-void addMasses(const Block& block, const V3d& direction, double share) {
+void addMasses(const Block& block, const Plane& plane, const std::vector<EdgePiece>& edges,
+               double theta, double psi, double share) {
     const NearField& field = block.field;
     const double mass = field.kernel.mass;
     // Summed around a pixel, dchi is 2 pi where the direction lies in it and else 0; without m
     // dchi, edges beyond the reach need not be summed.
-    const double theta = std::atan2(std::hypot(direction.x, direction.y), direction.z);
-    const double psi = std::atan2(direction.y, direction.x);
     int column = static_cast<int>(std::floor(psi / block.psi(1))) - block.weights.column;
     column = ((column % field.width) + field.width) % field.width;
     const int row = std::min(static_cast<int>(theta / block.theta(1)), field.height - 1);
     block.add(block.at(row - block.weights.row, column), share * mass);
-    forEachEdge(block, direction, field.kernel.reach, [&](const EdgePiece& piece) {
-        const double length = (piece.b - piece.a).length();
-        if (length == 0) return;
-        const V2d along = (piece.b - piece.a) / length;
-        // Of a parallel's chord the origin may be on the wrong side, by next to nothing.
-        const double distance = std::max(std::abs(cross(piece.a, along)), 1e-15);
-        const double d = piece.origin_before ? distance : -distance;
-        const double from = piece.a.dot(along), to = piece.b.dot(along);
+    const V2d place = plane(polarDirection(theta, psi));
+    for (const EdgePiece& edge : edges) {
+        const V2d a = edge.a - place;
+        // Of a parallel's chord the direction may be on the wrong side, by next to nothing.
+        const double distance = std::max(std::abs(cross(a, edge.along)), 1e-15);
+        const double from = a.dot(edge.along), to = from + edge.length;
+        if (distance > field.kernel.reach || from > field.kernel.reach ||
+            to < -field.kernel.reach)
+            continue;
+        const bool left = edge.parallel ? theta < edge.line
+                                        : std::remainder(psi - edge.line, 2 * kPi) < 0;
+        const double d = left ? distance : -distance;
         const double angle = field.table.angle(d, from, to) -
                              mass * (std::atan(to / d) - std::atan(from / d));
-        block.add(piece.before, share * angle / (2 * kPi));
-        block.add(piece.after, -share * angle / (2 * kPi));
-    });
+        block.add(edge.before, share * angle / (2 * kPi));
+        block.add(edge.after, -share * angle / (2 * kPi));
+    }
 }
 
-/// int over the edge e0 e1 of B over the edge a b.
-double flowAcross(const NearField& field, const V2d& e0, const V2d& e1, const V2d& a,
-                  const V2d& b) {
-    const double length = (e1 - e0).length(), other = (b - a).length();
-    if (length == 0 || other == 0) return 0;
-    const V2d e = (e1 - e0) / length, f = (b - a) / other, normal(-f.y, f.x);
-    // At the place x on e: distance d from the line of a b, a and b at s_a and s_b along it.
-    const double d0 = (e0 - a).dot(normal), slope = e.dot(normal);
-    const double s_a0 = (a - e0).dot(f), s_b0 = (b - e0).dot(f), drift = -e.dot(f);
-    // Where the integrand changes: beside a, beside b, and where e crosses a b.
+/// int over the edge that goes from e0 along e of B over the edge f.
+double flowAcross(const NearField& field, const V2d& e0, const V2d& e, double length,
+                  const EdgePiece& f) {
+    const NearKernel& kernel = field.kernel;
+    const V2d between = f.a - e0, normal(-f.along.y, f.along.x);
+    // At the place x on e: distance d from f's line, f's ends at s_a and s_b along it.
+    const double d0 = -between.dot(normal), slope = e.dot(normal);
+    const double s_a0 = between.dot(f.along), drift = -e.dot(f.along);
+    // Where the integrand changes: beside f's ends, and where e crosses f.
     struct Site {
         double place, distance;
     };
-    std::array<Site, 3> sites{Site{(a - e0).dot(e), std::abs(cross(e, a - e0))},
-                              Site{(b - e0).dot(e), std::abs(cross(e, b - e0))},
-                              Site{0, 1e3}};
+    const V2d to_end = between + f.along * f.length;
+    std::array<Site, 3> sites{Site{between.dot(e), std::abs(cross(e, between))},
+                              Site{to_end.dot(e), std::abs(cross(e, to_end))}, Site{-1, 1e3}};
     if (std::abs(slope) > 1e-9) {
-        const double place = -d0 / slope;
-        const bool crosses = s_a0 + place * drift <= 0 && s_b0 + place * drift >= 0;
-        if (crosses) sites[2] = {place, 0};
+        const double place = -d0 / slope, s = s_a0 + place * drift;
+        if (s <= 0 && s + f.length >= 0) sites[2] = {place, 0};
     }
+    const auto nearest = [&](double place) {
+        double least = 1e3;
+        for (const Site& site : sites)
+            least = std::min(least, std::max(std::abs(place - site.place), site.distance));
+        return least;
+    };
+    const GaussRule &many = gaussRule(kFlowPoints), &few = gaussRule(kFlowPoints - 2);
+    double sum = 0;
+    // Pieces not longer than the distance of what changes from their middle; such places part them.
     std::array<double, 5> cuts{0, length, length, length, length};
     for (std::size_t i = 0; i < 3; ++i)
-        if (sites[i].distance < 1e2) cuts[i + 1] = std::clamp(sites[i].place, 0.0, length);
+        if (sites[i].place > 0 && sites[i].place < length && sites[i].distance < length)
+            cuts[i + 1] = sites[i].place;
     std::ranges::sort(cuts);
-    const GaussRule& rule = gaussRule(4);
-    const auto piece = [&](const auto& self, double from, double to) -> double {
-        const double middle = 0.5 * (from + to), half = 0.5 * (to - from);
-        double nearest = 1e3;
-        for (const Site& site : sites)
-            nearest = std::min(nearest, std::max(std::abs(middle - site.place), site.distance));
-        if (2 * half > 1.5 * (field.kernel.width + nearest))
-            return self(self, from, middle) + self(self, middle, to);
-        double sum = 0;
-        for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
-            const double x = middle + half * rule.nodes[i], d = d0 + x * slope;
-            if (std::abs(d) >= field.kernel.reach) continue;
-            sum += rule.weights[i] * field.table.flow(d, s_a0 + x * drift, s_b0 + x * drift);
+    for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
+        double from = cuts[i];
+        while (from < cuts[i + 1]) {
+            double to = cuts[i + 1];
+            double room = kernel.width + nearest(0.5 * (from + to));
+            while (to - from > kFlowPiece * room) {
+                to = from + 0.5 * (to - from);
+                room = kernel.width + nearest(0.5 * (from + to));
+            }
+            const double middle = 0.5 * (from + to), half = 0.5 * (to - from);
+            const GaussRule& rule = to - from > 0.5 * room ? many : few;
+            for (std::size_t k = 0; k < rule.nodes.size(); ++k) {
+                const double x = middle + half * rule.nodes[k], d = d0 + x * slope;
+                const double s = s_a0 + x * drift;
+                if (std::abs(d) < kernel.reach)
+                    sum += half * rule.weights[k] * field.table.flow(d, s, s + f.length);
+            }
+            from = to;
         }
-        return half * sum;
-    };
-    double sum = 0;
-    for (std::size_t i = 0; i + 1 < cuts.size(); ++i)
-        if (cuts[i + 1] > cuts[i]) sum += piece(piece, cuts[i], cuts[i + 1]);
+    }
     return sum;
 }
 
-/// Adds share * (what flows into each near pixel across the texel's edge from e0 to e1); `centre`
-/// is the texel's.
-void addFlow(const Block& block, const V3d& e0, const V3d& e1, const V3d& centre, double share) {
-    const V3d middle = (e0 + e1).normalized();
-    const Plane plane(middle);
-    const V2d from = plane(e0), to = plane(e1), e = (to - from).normalized();
-    // East, south and out are a left-handed frame.
-    const V2d outward = V2d(-e.y, e.x) * (e0.cross(e1).dot(centre) > 0 ? 1 : -1);
-    const double radius = block.field.kernel.reach + 0.5 * (to - from).length();
-    forEachEdge(block, middle, radius, [&](const EdgePiece& piece) {
-        const V2d along = (piece.b - piece.a).normalized();
-        const double facing = outward.dot(V2d(along.y, -along.x)); // out of `before`
-        if (std::abs(facing) < 1e-12) return;
-        const double flow =
-            share * facing * flowAcross(block.field, from, to, piece.a, piece.b);
-        block.add(piece.before, -flow);
-        block.add(piece.after, flow);
-    });
+/// Adds share * (what flows into each near pixel across the texel's edge from e0 to e1, in the
+/// edges' plane); `out` is the normal's sign.
+void addFlow(const Block& block, const std::vector<EdgePiece>& edges, const V2d& e0, const V2d& e1,
+             double out, double share) {
+    const double length = (e1 - e0).length(), reach = block.field.kernel.reach;
+    if (length == 0) return;
+    const V2d e = (e1 - e0) / length, outward = V2d(-e.y, e.x) * out;
+    for (const EdgePiece& f : edges) {
+        const double facing = outward.dot(V2d(f.along.y, -f.along.x)); // out of `before`
+        const V2d a = f.a - e0;
+        if (std::abs(facing) < 1e-12 || std::abs(a.dot(e)) > reach + length + f.length ||
+            std::abs(a.dot(outward)) > reach + f.length)
+            continue;
+        const double flow = share * facing * flowAcross(block.field, e0, e, length, f);
+        block.add(f.before, -flow);
+        block.add(f.after, flow);
+    }
 }
 
 /// The texel's outline as polar directions, `pieces` to a side.
@@ -221,6 +240,26 @@ std::vector<V3d> outlineOf(const MapExtent& map, int x, int y, double scale, int
         }
     }
     return outline;
+}
+
+/// Adds what flows across a texel's outline, over its solid angle. One plane does for a small one.
+void addOutline(const Block& block, const std::vector<V3d>& outline, const V3d& centre,
+                bool one_plane, double solid_angle) {
+    const double reach = block.field.kernel.reach;
+    std::vector<EdgePiece> edges;
+    if (one_plane) {
+        const double extent = (outline[0] - centre).length();
+        edges = edgesAbout(block, centre, reach + 2 * extent);
+    }
+    for (std::size_t i = 0; i < outline.size(); ++i) {
+        const V3d &e0 = outline[i], &e1 = outline[(i + 1) % outline.size()];
+        const V3d middle = (e0 + e1).normalized();
+        if (!one_plane) edges = edgesAbout(block, middle, reach + 0.5 * (e1 - e0).length());
+        const Plane plane(one_plane ? centre : middle);
+        // East, south and out are a left-handed frame.
+        const double out = e0.cross(e1).dot(centre) > 0 ? 1 : -1;
+        addFlow(block, edges, plane(e0), plane(e1), out, 1 / solid_angle);
+    }
 }
 
 /// The rows and columns within `reach` of the outline.
@@ -332,19 +371,20 @@ NearWeights nearWeights(const NearField& field, const MapExtent& map, int x, int
     const std::vector<V3d> outline = outlineOf(map, x, y, footprint.scale, pieces);
     setBlock(field, outline, centre, weights);
     Block block{field, weights, {}};
+    const double solid_angle = texelSolidAngle(map.layout, map.width, map.height, x, y);
     const Plane plane(centre);
     const auto halfAxis = [&](V2d offset) { return plane(texelPlace(map, x, y, offset)); };
     addFar(block, centre,
            {halfAxis(V2d(0.5 * footprint.scale, 0)), halfAxis(V2d(0, 0.5 * footprint.scale))},
            extent);
     if (flows) {
-        const double solid_angle = texelSolidAngle(map.layout, map.width, map.height, x, y);
-        for (std::size_t i = 0; i < outline.size(); ++i)
-            addFlow(block, outline[i], outline[(i + 1) % outline.size()], centre, 1 / solid_angle);
+        addOutline(block, outline, centre, pieces == 1, solid_angle);
     } else {
         const RowPoints points = texelPoints(map, x, y, footprint);
+        const double radius = field.kernel.reach + extent;
+        const std::vector<EdgePiece> edges = edgesAbout(block, centre, radius);
         for (std::size_t i = 0; i < points.u.size(); ++i)
-            addMasses(block, polarDirection(kPi * points.v[i], 2 * kPi * points.u[i]),
+            addMasses(block, plane, edges, kPi * points.v[i], 2 * kPi * points.u[i],
                       points.share[i]);
     }
     double sum = 0;
