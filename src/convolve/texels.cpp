@@ -98,7 +98,10 @@ double texelCount(const PrefilterRequest& request) {
 }
 
 V3d texelPlace(const MapExtent& map, int x, int y, V2d offset) {
-    const V3d d = directionIn(map.layout, map.width, map.height, {x + 0.5, y + 0.5}, offset);
+    // A face's edge in the image is as well the next one's.
+    constexpr double kWithin = 1 - 1e-10;
+    const V3d d =
+        directionIn(map.layout, map.width, map.height, {x + 0.5, y + 0.5}, offset * kWithin);
     return {-d.z, d.x, d.y};
 }
 
