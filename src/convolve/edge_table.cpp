@@ -20,7 +20,10 @@ double EdgeTable::nodeAt(int i) const {
 
 EdgeTable::EdgeTable(const std::function<double(double)>& mass_beyond, double width, double reach,
                      double extent)
-    : width_(width), reach_(reach), step_(1 / kNodesPerUnit), inverse_width_(1 / width),
+    : width_(width),
+      reach_(reach),
+      step_(1 / kNodesPerUnit),
+      inverse_width_(1 / width),
       inverse_step_(kNodesPerUnit),
       nodes_(static_cast<int>(std::log1p(extent / width) / step_) + 5) {
     const double all = mass_beyond(0);
@@ -63,8 +66,7 @@ EdgeTable::EdgeTable(const std::function<double(double)>& mass_beyond, double wi
                 // From 0 on, Phi's logarithm: s = to x^2.
                 const double x = 0.5 + 0.5 * rule.nodes[i];
                 const double s = b == 1 ? to * x * x : from + (to - from) * x;
-                const double ds =
-                    0.5 * rule.weights[i] * (b == 1 ? 2 * to * x : to - from);
+                const double ds = 0.5 * rule.weights[i] * (b == 1 ? 2 * to * x : to - from);
                 const double r2 = d * d + s * s, r = std::sqrt(r2);
                 flow += ds * potential(r);
                 angle += ds * (all - beyond(r)) * d / r2;

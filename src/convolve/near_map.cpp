@@ -39,8 +39,7 @@ Move moveOnFaces(const MapExtent& map, int x, int y, int probe_width) {
         move.turn -= probe_width / 2;
     };
     const double side = std::max(std::abs(d.x), std::abs(d.z));
-    if (quarters >= 2 && (side < d.y ? d.z < 0 : d.z == -side || d.x == -side))
-        half();
+    if (quarters >= 2 && (side < d.y ? d.z < 0 : d.z == -side || d.x == -side)) half();
     if (quarters == 4 && side > d.y && d.x == side) quarter();
     if (d.x < 0) {
         move.reflect_psi = true;
@@ -132,9 +131,8 @@ Image nearMap(const Panorama& probe, const NearField& field, const PrefilterRequ
                 nearWeights(field, map, key % map.width, key / map.width, footprint);
             for (std::size_t i = first[group]; i < first[group + 1]; ++i) {
                 const Texel& t = texels[i];
-                const V3d value =
-                    weightedSum(probe.image, weights, moveOf(map, t.x, t.y, field.width),
-                                area.at(t.x, t.y));
+                const V3d value = weightedSum(
+                    probe.image, weights, moveOf(map, t.x, t.y, field.width), area.at(t.x, t.y));
                 for (int c = 0; c < 3; ++c)
                     result.at(t.x, t.y)[c] = static_cast<float>(value[c]);
             }

@@ -68,8 +68,8 @@ struct Block {
     }
 };
 
-/// A piece of a parallel, westwards, or of a meridian, southwards, in a plane: from a to b the pixel
-/// in the north or west lies on the left, x going to y.
+/// A piece of a parallel, westwards, or of a meridian, southwards, in a plane: from a to b the
+/// pixel in the north or west lies on the left, x going to y.
 struct EdgePiece {
     int before, after; ///< the pixels on the left and on the right, -1 outside the block
     bool parallel;
@@ -107,7 +107,8 @@ std::vector<EdgePiece> edgesAbout(const Block& block, const V3d& origin, double 
         const double theta = block.theta(w.row + j), sin = std::sin(theta);
         // Chords run up to half^2 sin cos / 2 nearer to the pole than the parallel, two thirds of
         // that in the mean.
-        const double half = 0.5 * column_step / std::max(1.0, std::ceil(column_step * sin / kPiece));
+        const double half =
+            0.5 * column_step / std::max(1.0, std::ceil(column_step * sin / kPiece));
         const double chord = theta + half * half * sin * std::cos(theta) / 3;
         for (int i = 0; i < w.columns; ++i)
             add({block.at(j - 1, i), block.at(j, i), true, theta, {}, {}, 0}, chord,
@@ -141,14 +142,13 @@ void addMasses(const Block& block, const Plane& plane, const std::vector<EdgePie
         // Of a parallel's chord the direction may be on the wrong side, by next to nothing.
         const double distance = std::max(std::abs(cross(a, edge.along)), 1e-15);
         const double from = a.dot(edge.along), to = from + edge.length;
-        if (distance > field.kernel.reach || from > field.kernel.reach ||
-            to < -field.kernel.reach)
+        if (distance > field.kernel.reach || from > field.kernel.reach || to < -field.kernel.reach)
             continue;
-        const bool left = edge.parallel ? theta < edge.line
-                                        : std::remainder(psi - edge.line, 2 * kPi) < 0;
+        const bool left =
+            edge.parallel ? theta < edge.line : std::remainder(psi - edge.line, 2 * kPi) < 0;
         const double d = left ? distance : -distance;
-        const double angle = field.table.angle(d, from, to) -
-                             mass * (std::atan(to / d) - std::atan(from / d));
+        const double angle =
+            field.table.angle(d, from, to) - mass * (std::atan(to / d) - std::atan(from / d));
         block.add(edge.before, share * angle / (2 * kPi));
         block.add(edge.after, -share * angle / (2 * kPi));
     }
@@ -334,11 +334,14 @@ void addFar(Block& block, const V3d& centre, const HalfAxes& texel, double exten
             // Covariance of both, by its Cholesky factor.
             const auto square = [](double x) { return x * x; };
             const double xx = (square(texel.a.x) + square(texel.b.x) + square(south.x) +
-                               square(east.x)) / 3,
+                               square(east.x)) /
+                              3,
                          xy = (texel.a.x * texel.a.y + texel.b.x * texel.b.y + south.x * south.y +
-                               east.x * east.y) / 3,
+                               east.x * east.y) /
+                              3,
                          yy = (square(texel.a.y) + square(texel.b.y) + square(south.y) +
-                               square(east.y)) / 3;
+                               square(east.y)) /
+                              3;
             const double l = std::sqrt(xx), m = xy / l, n = std::sqrt(std::max(0.0, yy - m * m));
             double sum = 0;
             for (const double s : {-1.0, 1.0})

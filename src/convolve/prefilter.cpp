@@ -179,8 +179,8 @@ Engine analyseProbe(const Panorama& panorama, std::span<const PrefilterRequest> 
         engine.power = powerSpectrum(*engine.clamped);
     }
     if (const int degree = narrowDegreeOf(plan); degree >= 0) {
-        engine.whole = analyse(analyseRows(image, scale, kNoThreshold, degree, threads), degree,
-                               threads);
+        engine.whole =
+            analyse(analyseRows(image, scale, kNoThreshold, degree, threads), degree, threads);
         engine.whole_power = powerSpectrum(*engine.whole);
     }
     engine.seconds = watch.seconds();
@@ -275,9 +275,9 @@ PrefilterResult inTwoParts(const Engine& engine, const PrefilterRequest& request
         parts.field = &field;
     }
     result.seconds_synthesis = watch.seconds();
-    const Image near = nearMap(engine.probe.panorama,
-                               makeNearField(split.near, probe.width, probe.height), request,
-                               footprintOf(request.lobe, texel, kAnyDegree), threads);
+    const Image near =
+        nearMap(engine.probe.panorama, makeNearField(split.near, probe.width, probe.height),
+                request, footprintOf(request.lobe, texel, kAnyDegree), threads);
     parts.near = &near;
     MapNorm norm;
     fillMap(engine.probe, request, footprintOf(request.lobe, texel, split.degree), parts, threads,
