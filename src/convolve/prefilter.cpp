@@ -24,7 +24,8 @@
 namespace ibl {
 namespace {
 
-/// Relative RMSE that the near kernel's weights leave, at most: measured, see narrow_test.
+/// Relative RMSE that the near kernel's weights leave: measured on a courtyard (GGX of 0.03 into
+/// 256-texel faces, 1.7e-5 against a random sum that is itself about as uncertain), not derived.
 constexpr double kNearError = 2e-5;
 constexpr double kNoThreshold = std::numeric_limits<double>::infinity();
 class Stopwatch {
