@@ -14,8 +14,10 @@ namespace {
 
 /// Edges are cut in pieces this long (radians) at most: a parallel is off its chord by 3e-5 of it.
 constexpr double kPiece = 0.015;
-/// Pixels this many times the texel's and the pixel's extent away are summed by points.
-constexpr double kFar = 2;
+/// Pixels this many times the texel's and the pixel's extent away are summed by points. A 1024x512
+/// probe with a sun, GGX of roughness 0.05 into faces of 256, against 8 times: 2 leaves a relative
+/// RMSE of 2.4e-4, 4 leaves 2.9e-6 for half as much time again.
+constexpr double kFar = 4;
 /// Gauss points to a piece of a texel's edge, and the piece's length over the distance of the
 /// nearest end of a pixel's edge.
 constexpr int kFlowPoints = 4;
