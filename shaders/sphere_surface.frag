@@ -21,5 +21,7 @@ void main() {
     if (square < 0.0 || (!inside && dot(eye, incident) > 0.0)) discard;
     float half_chord = sqrt(square);
     vec3 normal = inside ? -(nearest + half_chord * incident) : nearest - half_chord * incident;
+    surface_point = inside ? -normal : normal;
+    facet_normal = normal;
     color = vec4(shade(normal, incident), 1.0);
 }

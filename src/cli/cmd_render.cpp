@@ -20,6 +20,7 @@ struct RenderOptions {
     MaterialArguments material;
     CameraArguments camera;
     PictureArguments picture;
+    LightArguments lights;
     DisplayArguments display;
     std::string shader_folder;
 };
@@ -29,10 +30,20 @@ void runRender(const RenderOptions& options) {
     const WriteOptions how = writeOptions(options.output, options.common);
     requireFitting(options.display, options.output);
     FrameOptions frame = options.picture.frame;
+    frame.shadow_size = options.lights.shadow_size;
+    std::optional<Image> plate;
+    if (!options.lights.plate.empty()) {
+        plate = plateOf(session, options.lights);
+        if (!options.picture.size_given) {
+            frame.width = plate->width;
+            frame.height = plate->height;
+        }
+    }
     const Camera camera = cameraOf(options.camera);
     cameraRays(camera, frame.width, frame.height); // refuses bad cameras
     Scene scene;
     scene.material = materialOf(options.material);
+    requireLightUse(options.lights, scene.material, options.picture);
     Panorama probe = session.readProbe(options.probe);
     // Textures hold lat-longs and cubes.
     if (isSquareMap(probe.layout)) {
@@ -40,7 +51,10 @@ void runRender(const RenderOptions& options) {
     }
     scene.probe = &probe;
     scene.object = objectOf(session, options.object);
-    scene.background = backgroundOf(session, options.picture);
+    scene.background =
+        plate ? Background(std::move(*plate)) : backgroundOf(session, options.picture);
+    scene.lights = lightsOf(session, options.lights, probe);
+    scene.ground = groundOf(options.lights, scene.object);
 
     Panorama diffuse;
     if (needsDiffuse(scene.material)) {
@@ -56,6 +70,7 @@ void runRender(const RenderOptions& options) {
     if (!options.shader_folder.empty()) frame.shader_folder = options.shader_folder;
     Renderer renderer = session.stage("upload", [&] { return Renderer(context, scene, frame); });
     Image picture = session.stage("draw", [&] { return renderer.render(camera); });
+    if (!scene.lights.empty()) reportLights(session, renderer.lightCounts());
     showPicture(session, context, options.display, std::move(picture), std::nullopt, options.output,
                 how, frame.shader_folder);
     session.finish();
@@ -76,6 +91,7 @@ Command bindRender(CLI::App& root) {
         ->group("Material");
     bindCamera(*app, options->camera);
     bindPicture(*app, options->picture);
+    bindLightOptions(*app, options->lights);
     bindDisplay(*app, options->display);
     bindImageOutput(*app, options->output);
     bindCommon(*app, options->common);

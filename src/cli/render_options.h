@@ -4,6 +4,8 @@
 #include "cli/display_options.h"
 #include "cli/session.h"
 
+#include "lights/cut_lights.h"
+#include "lights/scene_light.h"
 #include "render/renderer.h"
 
 #include <map>
@@ -43,9 +45,32 @@ Material materialOf(const MaterialArguments& arguments);
 struct PictureArguments {
     std::string background = "probe";
     FrameOptions frame;
+    bool size_given = false;
 };
 /// `--size`, `--samples`, `--background`.
 void bindPicture(CLI::App& app, PictureArguments& arguments);
 Background backgroundOf(Session& session, const PictureArguments& arguments);
+
+struct LightArguments {
+    std::string lights; ///< a number, a file, or nothing
+    std::optional<LightMethod> method;
+    std::optional<int> shadow_size;
+    bool ground = false;
+    std::optional<double> ground_height;
+    std::optional<V3d> ground_albedo;
+    std::string plate;
+};
+/// `--lights`, `--light-method`, `--shadow-size`, `--ground`, `--ground-height`, `--ground-albedo`,
+/// `--plate`; after bindPicture().
+void bindLightOptions(CLI::App& app, LightArguments& arguments);
+/// Throws Error (usage) for lights that light nothing, for what needs lights and has none, and for a
+/// number that is none of lights; for an albedo of the ground where nothing is behind it.
+void requireLightUse(const LightArguments& arguments, const Material& material,
+                     const PictureArguments& picture);
+std::vector<SceneLight> lightsOf(Session& session, const LightArguments& arguments,
+                                 const Panorama& probe);
+std::optional<Ground> groundOf(const LightArguments& arguments, const Object& object);
+Image plateOf(Session& session, const LightArguments& arguments);
+void reportLights(Session& session, const LightCounts& counts);
 
 } // namespace ibl

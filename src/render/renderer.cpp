@@ -1,6 +1,7 @@
 #include "render/renderer.h"
 
 #include "core/error.h"
+#include "render/lighting.h"
 #include "render/mesh_buffers.h"
 #include "render/panorama_texture.h"
 #include "render/sample_pattern.h"
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 namespace ibl {
@@ -25,6 +27,17 @@ Error usage(const std::string& problem) {
     return {ExitCode::usage, "render: " + problem};
 }
 
+// Beyond this many radii of the object no shadow is looked for on the ground.
+constexpr double kGroundReach = 1e4;
+
+int shadowSize(const FrameOptions& options) {
+    if (options.shadow_size) return *options.shadow_size;
+    int size = 256;
+    while (size < 2048 && 4 * size < 3 * options.height)
+        size *= 2;
+    return size;
+}
+
 } // namespace
 
 bool needsProbe(const Material& material, const Background& background) {
@@ -36,6 +49,8 @@ bool needsDiffuse(const Material& material) {
     return shaderInfo(material.shader).reads_diffuse;
 }
 
+using MakeProgram = std::function<Program(std::string_view, std::vector<std::string_view>)>;
+
 struct Renderer::State {
     FrameOptions options;
     bool opaque = true;
@@ -46,6 +61,11 @@ struct Renderer::State {
     std::optional<MeshBuffers> mesh;
 
     VertexArray no_vertices;
+    std::optional<Lighting> lighting;
+    std::optional<Ground> ground;
+    bool lit = false;
+    const Scene* light_scene = nullptr; ///< of which `lighting` chooses lights
+
     Program surface, background, accumulate, resolve;
     // One tile: a sample, the sum of samples, and the picture as it is read.
     Texture sample, sum, mean;
@@ -54,15 +74,18 @@ struct Renderer::State {
 
     void uploadScene(const Scene& scene);
     void makePrograms(const Scene& scene);
+    void makeBackground(const Scene& scene, const MakeProgram& program);
     void setMaterial(const Material& material) const;
     void makeTargets();
 
     V2i tileSize() const;
     void drawFullscreen(const Program& program) const;
-    void drawSample(const CameraRays& rays, const V2i& tile, const V2d& jitter) const;
+    void drawSample(const CameraRays& rays, const V2i& tile, const V2d& jitter, int batch) const;
+    void drawBackground(const CameraRays& rays, const V2i& tile, int batch) const;
     void drawSphere(const CameraRays& rays, const V2i& tile) const;
     void drawMesh(const CameraRays& rays, const V2d& jitter) const;
-    void drawTile(const CameraRays& rays, const V2i& tile) const;
+    void drawTile(const CameraRays& rays, const V2i& tile);
+    void placeLights(const CameraRays& rays);
     void drawFrame(const Camera& camera, Image& frame);
 };
 
@@ -85,33 +108,66 @@ void Renderer::State::uploadScene(const Scene& scene) {
     opaque = !std::holds_alternative<NoBackground>(scene.background);
     box = bounds(scene.object);
     if (scene.object.mesh) mesh = uploadMesh(*scene.object.mesh);
+    lit = shaderInfo(scene.material.shader).lit;
+    ground = scene.ground;
+    if (!lit && !ground) return;
+    if (scene.lights.empty()) throw usage("nothing lights the picture; give lights");
+    if (ground && ground->height > box.min.y + 1e-5 * box.size().length())
+        throw usage("the ground cuts the object; lower it to " + std::to_string(box.min.y));
+    light_scene = &scene;
+    lighting.emplace(scene, shadowSize(options), options.shader_folder);
 }
 
 void Renderer::State::makePrograms(const Scene& scene) {
     std::vector<std::string> definitions = probe.definitions("PROBE");
-    for (const std::string& d : diffuse.definitions("DIFFUSE"))
-        definitions.push_back(d);
+    const auto define = [&](const std::vector<std::string>& more) {
+        definitions.insert(definitions.end(), more.begin(), more.end());
+    };
+    define(diffuse.definitions("DIFFUSE"));
+    if (lighting) define(lighting->definitions());
+    if (ground) {
+        define({"GROUND_ALBEDO " + std::to_string(ground->albedo.has_value()),
+                "GROUND_ALPHA " + std::to_string(!opaque)});
+    }
     const auto& folder = options.shader_folder;
     const auto program = [&](std::string_view vertex, std::vector<std::string_view> fragment) {
         return makeProgram({vertex, std::move(fragment), definitions, {}}, folder);
     };
-    surface =
-        program(mesh ? "mesh.vert" : "fullscreen.vert",
-                {"view.glsl", "lookup.glsl", "maps.glsl", shaderInfo(scene.material.shader).file,
-                 mesh ? "mesh_surface.frag" : "sphere_surface.frag"});
+    std::vector<std::string_view> files{"view.glsl", "lookup.glsl", "maps.glsl"};
+    if (lit) files.insert(files.end(), {"lights.glsl", "tangent.glsl"});
+    files.push_back(shaderInfo(scene.material.shader).file);
+    if (lit) files.push_back("lit_surface.glsl");
+    files.push_back(mesh ? "mesh_surface.frag" : "sphere_surface.frag");
+    surface = program(mesh ? "mesh.vert" : "fullscreen.vert", files);
     setMaterial(scene.material);
-    if (std::holds_alternative<ProbeBackground>(scene.background)) {
-        background = program("fullscreen.vert",
-                             {"view.glsl", "lookup.glsl", "maps.glsl", "background_probe.frag"});
-    } else if (image) {
-        background = program("fullscreen.vert", {"background_image.frag"});
-    }
+    makeBackground(scene, program);
     resolve = program("fullscreen.vert", {"resolve.frag"});
-    if (options.samples > 1) accumulate = program("fullscreen.vert", {"accumulate.frag"});
+    if (options.samples > 1 || lighting) accumulate = program("fullscreen.vert", {"accumulate.frag"});
     // Each sample goes into the sum by the weight 2^-k, where 2^k >= samples.
     const double weight = std::exp2(-std::ceil(std::log2(options.samples)));
     if (accumulate) setUniform(accumulate, "weight", weight);
     setUniform(resolve, "sum_weight", weight * options.samples);
+}
+
+void Renderer::State::makeBackground(const Scene& scene, const MakeProgram& program) {
+    std::vector<std::string_view> files{"view.glsl"};
+    if (std::holds_alternative<ProbeBackground>(scene.background)) {
+        files.insert(files.end(), {"lookup.glsl", "maps.glsl", "background_probe.glsl"});
+    } else if (image) {
+        files.push_back("background_image.glsl");
+    } else if (ground) {
+        files.push_back("background_plain.glsl");
+    } else {
+        return;
+    }
+    if (ground) files.push_back("lights.glsl");
+    files.push_back(ground ? "ground.frag" : "background.frag");
+    background = program("fullscreen.vert", files);
+    if (!ground) return;
+    setUniform(background, "plain_color", V3d(clear_color));
+    setUniform(background, "plain_alpha", opaque ? 1.0 : 0.0);
+    setUniform(background, "ground_height", ground->height);
+    if (ground->albedo) setUniform(background, "ground_albedo", *ground->albedo);
 }
 
 void Renderer::State::setMaterial(const Material& material) const {
@@ -137,7 +193,7 @@ void Renderer::State::makeTargets() {
     depth = makeRenderbuffer(GL_DEPTH_COMPONENT32F, size.x, size.y);
     sample = makeTexture(GL_TEXTURE_2D, GL_RGBA32F, size.x, size.y);
     to_sample = makeFramebuffer(sample, depth.id());
-    if (options.samples > 1) {
+    if (accumulate) {
         sum = makeTexture(GL_TEXTURE_2D, GL_RGBA32F, size.x, size.y);
         to_sum = makeFramebuffer(sum);
     }
@@ -178,58 +234,86 @@ void Renderer::State::drawMesh(const CameraRays& rays, const V2d& jitter) const 
     glDrawElements(GL_TRIANGLES, mesh->count, GL_UNSIGNED_INT, nullptr);
 }
 
+// What every program that includes shaders/view.glsl wants, of one sample of a tile.
+void setView(const Program& program, const CameraRays& rays, const V2d& offset) {
+    setUniform(program, "pixel_offset", offset);
+    setUniform(program, "forward", rays.forward);
+    setUniform(program, "step_x", rays.step_x);
+    setUniform(program, "step_y", rays.step_y);
+}
+
 // One sample a pixel of a tile. `jitter` is the sample's place from the pixel's centre. The
-// background comes last, at the far plane, so that it is looked up only where it is seen.
-void Renderer::State::drawSample(const CameraRays& rays, const V2i& tile, const V2d& jitter) const {
+// background comes last, at the far plane, so that it is looked up only where it is seen. Batches
+// after the first add what their lights give, and no alpha.
+void Renderer::State::drawSample(const CameraRays& rays, const V2i& tile, const V2d& jitter,
+                                 int batch) const {
     glBindFramebuffer(GL_FRAMEBUFFER, to_sample.id());
     glViewport(-tile.x, -tile.y, options.width, options.height);
     const V2d offset = V2d(tile) + jitter - rays.centre;
-    const auto setView = [&](const Program& program) {
-        setUniform(program, "pixel_offset", offset);
-        setUniform(program, "forward", rays.forward);
-        setUniform(program, "step_x", rays.step_x);
-        setUniform(program, "step_y", rays.step_y);
-    };
-    if (!background) {
-        const std::array<float, 4> color{clear_color.x, clear_color.y, clear_color.z,
-                                         opaque ? 1.f : 0.f};
+    if (!background || batch > 0) {
+        const V3f color_behind = batch > 0 ? V3f(0) : clear_color;
+        const std::array<float, 4> color{color_behind.x, color_behind.y, color_behind.z,
+                                         opaque && batch == 0 ? 1.f : 0.f};
         glClearBufferfv(GL_COLOR, 0, color.data());
     }
     const float far_depth = 1;
     glClearBufferfv(GL_DEPTH, 0, &far_depth);
     glEnable(GL_DEPTH_TEST);
-    setView(surface);
+    setView(surface, rays, offset);
+    if (lit) lighting->setUniforms(surface, batch);
+    const GLboolean adds = batch == 0 || lit;
+    glColorMask(adds, adds, adds, batch == 0);
     if (mesh) {
         drawMesh(rays, jitter);
     } else {
         drawSphere(rays, tile);
     }
-    if (background) {
-        setView(background);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    if (background && (batch == 0 || ground)) {
+        setView(background, rays, offset);
         setUniform(background, "tile_origin", tile);
+        if (ground) lighting->setUniforms(background, batch);
         drawFullscreen(background);
     }
     glDisable(GL_DEPTH_TEST);
 }
 
-// All samples of a tile; they end up in `sum`, or in `sample` when there is but one.
-void Renderer::State::drawTile(const CameraRays& rays, const V2i& tile) const {
+// All samples of a tile under all batches of lights; they end up in `sum`, or in `sample` when there
+// is but one.
+void Renderer::State::drawTile(const CameraRays& rays, const V2i& tile) {
+    const int batches = lighting ? lighting->batchCount() : 1;
     bool first = true;
-    for (const V2d& point : samplePattern(options.samples)) {
-        glBindTextureUnit(0, probe.texture.id());
-        drawSample(rays, tile, point - V2d(0.5));
-        if (!accumulate) return;
-        glBindFramebuffer(GL_FRAMEBUFFER, to_sum.id());
-        glBindTextureUnit(0, sample.id());
-        if (!first) glEnable(GL_BLEND);
-        drawFullscreen(accumulate);
-        glDisable(GL_BLEND);
-        first = false;
+    for (int batch = 0; batch < batches; ++batch) {
+        if (lighting) lighting->use(batch, mesh ? &*mesh : nullptr);
+        for (const V2d& point : samplePattern(options.samples)) {
+            glBindTextureUnit(0, probe.texture.id());
+            drawSample(rays, tile, point - V2d(0.5), batch);
+            if (!accumulate) return;
+            glBindFramebuffer(GL_FRAMEBUFFER, to_sum.id());
+            glBindTextureUnit(0, sample.id());
+            if (!first) glEnable(GL_BLEND);
+            drawFullscreen(accumulate);
+            glDisable(GL_BLEND);
+            first = false;
+        }
     }
+}
+
+void Renderer::State::placeLights(const CameraRays& rays) {
+    if (!lighting) return;
+    if (ground && rays.eye.y <= ground->height)
+        throw usage("the camera stands below the ground, which is seen from above; raise it");
+    lighting->chooseLights(*light_scene, rays.eye);
+    if (!ground) return;
+    setUniform(background, "eye", rays.eye);
+    setUniform(background, "ground_irradiance", lighting->groundIrradiance());
+    const double radius = 0.5 * V3d(box.size()).length();
+    setUniform(background, "ground_reach", rays.eye.length() + kGroundReach * radius);
 }
 
 void Renderer::State::drawFrame(const Camera& camera, Image& frame) {
     const CameraRays rays = cameraRays(camera, options.width, options.height);
+    placeLights(rays);
     const V2i size = tileSize();
     glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
     glFrontFace(GL_CW);     // counter-clockwise, in a frame whose y is down
@@ -278,6 +362,10 @@ Image Renderer::render(const Camera& camera) {
     Image frame(state_->options.width, state_->options.height, state_->opaque ? 3 : 4);
     state_->drawFrame(camera, frame);
     return frame;
+}
+
+LightCounts Renderer::lightCounts() const {
+    return state_->lighting ? state_->lighting->counts() : LightCounts{};
 }
 
 } // namespace ibl

@@ -16,13 +16,18 @@ struct FrameOptions {
     int width = 512;
     int height = 512;
     int samples = 16; ///< shaded samples a pixel; the picture is their mean (a box of one pixel)
+    /// Texels a side of shadow maps; without it the power of two that is at least 3/4 of the frame's
+    /// height, 256 to 2048.
+    std::optional<int> shadow_size;
     std::optional<std::filesystem::path> shader_folder; ///< replaces built-in shaders, file by file
 };
 
-/// A scene on the graphics device, ready to be drawn. The context must be current and outlive it.
+/// A scene on the graphics device, ready to be drawn. The context must be current and outlive it, and
+/// so must a scene with lights.
 ///
 /// Throws Error: usage for frames the device cannot draw (a side over its limit, samples < 1), for
-/// a background image of another size and for a missing map; input for shaders from the folder that
+/// a background image of another size, for a missing map, and for a ground that cuts the object or a
+/// lit material without lights; input for shaders from the folder that
 /// do not compile, with file and line, and for probes larger than the device's textures.
 class Renderer {
 public:
@@ -32,7 +37,11 @@ public:
     Renderer& operator=(Renderer&&) noexcept;
 
     /// Scene-linear pixels: RGBA, premultiplied, when the scene has no background, otherwise RGB.
+    /// Throws Error (usage) for a camera below the ground.
     Image render(const Camera& camera);
+
+    /// What became of the lights in the picture drawn last.
+    LightCounts lightCounts() const;
 
 private:
     struct State;
