@@ -23,8 +23,8 @@ struct LightRecord {
     std::array<float, 4> place, strength, axis, maps;
 };
 struct ViewRecord {
-    std::array<float, 16> map_from_world;
-    std::array<float, 12> world_from_map; // its rows x, y and z
+    std::array<float, 16> map_from_world, world_from_map;
+    std::array<float, 4> light; // whose: its place in the batch
 };
 
 std::array<float, 4> floats(const V3d& v, double w) {
@@ -52,13 +52,16 @@ LightRecord recordOf(const SceneLight& light) {
     return record;
 }
 
-ViewRecord recordOf(const ShadowView& view) {
+ViewRecord recordOf(const ShadowView& view, std::size_t light) {
     ViewRecord record{};
+    const M44d& m = view.map_from_world;
+    const auto texels = [&](int c) { return V3d(m[0][c], m[1][c], m[2][c]).length(); };
+    const double u = texels(0), v = texels(1), z = texels(2);
+    record.light = floats(V3d(static_cast<double>(light), z / (u * u), z / (v * v)), 0);
     for (std::size_t row = 0; row < 4; ++row) {
         for (std::size_t column = 0; column < 4; ++column) {
             const int r = static_cast<int>(row), c = static_cast<int>(column);
             record.map_from_world[4 * row + column] = static_cast<float>(view.map_from_world[r][c]);
-            if (row == 3) continue;
             record.world_from_map[4 * row + column] = static_cast<float>(view.world_from_map[r][c]);
         }
     }
@@ -69,10 +72,14 @@ ViewRecord recordOf(const ShadowView& view) {
 
 Lighting::Lighting(const Scene& scene, int map_size,
                    const std::optional<std::filesystem::path>& shader_folder)
-    : local_(std::ranges::any_of(scene.lights, isLocal)), map_size_(map_size) {
-    if (scene.object.mesh) {
+    : local_(std::ranges::any_of(scene.lights, isLocal)),
+      caster_{bounds(scene.object), 1},
+      maps_needed_(scene.object.mesh),
+      map_size_(map_size) {
+    if (maps_needed_) {
         caster_ = casterOf(*scene.object.mesh);
-        draw_depth_ = makeProgram({"shadow_map.vert", {"shadow_map.frag"}, {}, {}}, shader_folder);
+        draw_depth_ =
+            makeProgram({{"shadow_map.vert"}, {"shadow_map.frag"}, {}, {}}, shader_folder);
         GLuint id = 0;
         glCreateFramebuffers(1, &id);
         to_layer_ = Framebuffer(id);
@@ -91,7 +98,7 @@ Lighting::Lighting(const Scene& scene, int map_size,
 std::vector<std::string> Lighting::definitions() const {
     return {"LIGHT_CAPACITY " + std::to_string(kBatch),
             "LOCAL_LIGHTS " + std::to_string(local_ ? 1 : 0),
-            "SHADOW_MAPS " + std::to_string(caster_ ? 1 : 0)};
+            "SHADOW_MAPS " + std::to_string(maps_needed_ ? 1 : 0)};
 }
 
 void Lighting::chooseLights(const Scene& scene, const V3d& eye) {
@@ -105,10 +112,8 @@ void Lighting::chooseLights(const Scene& scene, const V3d& eye) {
     views_.clear();
     starts_.assign(1, 0);
     for (const SceneLight& light : lights_) {
-        if (caster_) {
-            for (const ShadowView& view : shadowViews(light, *caster_, map_size_))
-                views_.push_back(view);
-        }
+        const std::vector<ShadowView> views = shadowViews(light, caster_, map_size_);
+        views_.insert(views_.end(), views.begin(), views.end());
         starts_.push_back(views_.size());
     }
     makeBatches();
@@ -118,7 +123,8 @@ void Lighting::chooseLights(const Scene& scene, const V3d& eye) {
 // A picture without lights has one batch, of none.
 void Lighting::makeBatches() {
     const auto map_bytes = static_cast<std::size_t>(map_size_) * map_size_ * sizeof(float);
-    const std::size_t most_views = std::clamp(kMapBytes / map_bytes, std::size_t{6}, kBatch);
+    const std::size_t most_views =
+        maps_needed_ && !local_ ? std::clamp(kMapBytes / map_bytes, std::size_t{1}, kBatch) : kBatch;
     batches_.clear();
     std::size_t light = 0;
     do {
@@ -131,13 +137,18 @@ void Lighting::makeBatches() {
         }
         batches_.push_back(batch);
     } while (light < lights_.size());
+    if (local_ && batches_.size() > 1) {
+        throw inputError("render", "lights with more than " + std::to_string(kBatch) +
+                                       " shadow maps, point or spot lights among them (one inside "
+                                       "the object has six); give fewer");
+    }
 }
 
 void Lighting::use(int index, const MeshBuffers* mesh) {
     const Batch& batch = batches_[static_cast<std::size_t>(index)];
     if (index != in_use_) {
         uploadLights(batch);
-        if (mesh && batch.views > 0) drawMaps(batch, *mesh);
+        if (maps_needed_ && batch.views > 0) drawMaps(batch, *mesh);
     }
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, light_block_.id());
     glBindBufferBase(GL_UNIFORM_BUFFER, 1, view_block_.id());
@@ -154,10 +165,10 @@ void Lighting::uploadLights(const Batch& batch) {
         const std::size_t count = starts_[i + 1] - starts_[i];
         record.maps[0] = static_cast<float>(starts_[i] - batch.first_view);
         record.maps[1] = static_cast<float>(count);
-        if (count > 0) record.maps[2] = static_cast<float>(views_[starts_[i]].texel);
+        record.maps[2] = static_cast<float>(views_[starts_[i]].texel);
+        for (std::size_t k = starts_[i]; k < starts_[i + 1]; ++k)
+            views.push_back(recordOf(views_[k], i - batch.first_light));
     }
-    for (std::size_t i = batch.first_view; i < batch.first_view + batch.views; ++i)
-        views.push_back(recordOf(views_[i]));
     const auto upload = [](const Buffer& buffer, const auto& records) {
         if (records.empty()) return;
         glNamedBufferSubData(buffer.id(), 0,
@@ -203,7 +214,9 @@ void Lighting::drawMaps(const Batch& batch, const MeshBuffers& mesh) {
     checkGl("drawing shadow maps");
 }
 
-void Lighting::setUniforms(const Program& program, int batch) const {
+void Lighting::setUniforms(const Program& program, int batch, const V2d& jitter) const {
+    // Not the pixel's own jitter, which moves the surface's points across the maps as well.
+    setUniform(program, "texel_jitter", V2d(jitter.y, -jitter.x));
     setUniform(program, "light_count",
                static_cast<int>(batches_[static_cast<std::size_t>(batch)].lights));
     setUniform(program, "first_batch", batch == 0 ? 1 : 0);

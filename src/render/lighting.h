@@ -36,8 +36,14 @@ public:
     /// Makes the batch the one that programs see; draws its maps where they are not there. Leaves
     /// the frame buffer's binding and the viewport changed.
     void use(int batch, const MeshBuffers* mesh);
-    /// Sets the uniforms of a program that includes shaders/lights.glsl.
-    void setUniforms(const Program& program, int batch) const;
+    /// Sets the uniforms of a program that includes shaders/lights.glsl, for the sample that stands
+    /// `jitter` from its pixel's centre.
+    void setUniforms(const Program& program, int batch, const V2d& jitter) const;
+    /// Maps of the batch, and their size.
+    int viewCount(int batch) const {
+        return static_cast<int>(batches_[static_cast<std::size_t>(batch)].views);
+    }
+    int mapSize() const { return map_size_; }
 
 private:
     struct Batch {
@@ -49,7 +55,8 @@ private:
     void drawMaps(const Batch& batch, const MeshBuffers& mesh);
 
     bool local_ = false; ///< point or spot lights are among them
-    std::optional<Caster> caster_;
+    Caster caster_;
+    bool maps_needed_; ///< the exact sphere has views, but no maps
     int map_size_;
     std::vector<SceneLight> lights_;
     LightCounts counts_;

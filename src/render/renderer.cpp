@@ -27,9 +27,6 @@ Error usage(const std::string& problem) {
     return {ExitCode::usage, "render: " + problem};
 }
 
-// Beyond this many radii of the object no shadow is looked for on the ground.
-constexpr double kGroundReach = 1e4;
-
 int shadowSize(const FrameOptions& options) {
     if (options.shadow_size) return *options.shadow_size;
     int size = 256;
@@ -66,20 +63,29 @@ struct Renderer::State {
     bool lit = false;
     const Scene* light_scene = nullptr; ///< of which `lighting` chooses lights
 
-    Program surface, background, accumulate, resolve;
+    Program surface, under_lights, ground_shadow, background, accumulate, resolve;
     // One tile: a sample, the sum of samples, and the picture as it is read.
     Texture sample, sum, mean;
     Renderbuffer depth;
     Framebuffer to_sample, to_sum, to_mean;
+    std::array<Texture, 3> lit_points; ///< points, normals and facets' normals of a lit surface
+    Framebuffer to_points;             ///< these, with `sample` and its depth
+    Texture kept;                      ///< from the ground
+    Framebuffer to_kept;
 
     void uploadScene(const Scene& scene);
     void makePrograms(const Scene& scene);
     void makeBackground(const Scene& scene, const MakeProgram& program);
-    void setMaterial(const Material& material) const;
+    static void setMaterial(const Program& program, const Material& material);
     void makeTargets();
+    void makePointTargets(const V2i& size);
 
     V2i tileSize() const;
     void drawFullscreen(const Program& program) const;
+    void lightSurface(const CameraRays& rays, const V2d& offset, const V2d& jitter,
+                      int batch) const;
+    void drawGroundShadow(const CameraRays& rays, const V2d& offset, const V2d& jitter,
+                          int batch) const;
     void drawSample(const CameraRays& rays, const V2i& tile, const V2d& jitter, int batch) const;
     void drawBackground(const CameraRays& rays, const V2i& tile, int batch) const;
     void drawSphere(const CameraRays& rays, const V2i& tile) const;
@@ -131,15 +137,21 @@ void Renderer::State::makePrograms(const Scene& scene) {
     }
     const auto& folder = options.shader_folder;
     const auto program = [&](std::string_view vertex, std::vector<std::string_view> fragment) {
-        return makeProgram({vertex, std::move(fragment), definitions, {}}, folder);
+        std::vector<std::string_view> vertex_files{vertex};
+        if (vertex == "ground_shadow.vert") vertex_files.insert(vertex_files.begin(), "light_blocks.glsl");
+        return makeProgram({vertex_files, std::move(fragment), definitions, {}}, folder);
     };
     std::vector<std::string_view> files{"view.glsl", "lookup.glsl", "maps.glsl"};
-    if (lit) files.insert(files.end(), {"lights.glsl", "tangent.glsl"});
-    files.push_back(shaderInfo(scene.material.shader).file);
-    if (lit) files.push_back("lit_surface.glsl");
+    const std::string_view material = shaderInfo(scene.material.shader).file;
+    files.push_back(lit ? "lit_points.glsl" : material);
     files.push_back(mesh ? "mesh_surface.frag" : "sphere_surface.frag");
     surface = program(mesh ? "mesh.vert" : "fullscreen.vert", files);
-    setMaterial(scene.material);
+    setMaterial(surface, scene.material);
+    if (lit) {
+        under_lights = program("fullscreen.vert", {"view.glsl", "light_blocks.glsl", "lights.glsl",
+                                                   "tangent.glsl", material, "lit.frag"});
+        setMaterial(under_lights, scene.material);
+    }
     makeBackground(scene, program);
     resolve = program("fullscreen.vert", {"resolve.frag"});
     if (options.samples > 1 || lighting) accumulate = program("fullscreen.vert", {"accumulate.frag"});
@@ -160,26 +172,37 @@ void Renderer::State::makeBackground(const Scene& scene, const MakeProgram& prog
     } else {
         return;
     }
-    if (ground) files.push_back("lights.glsl");
-    files.push_back(ground ? "ground.frag" : "background.frag");
+    if (!ground) {
+        files.push_back("background.frag");
+        background = program("fullscreen.vert", files);
+        return;
+    }
+    const auto under = {"light_blocks.glsl", "lights.glsl", "ground.glsl"};
+    files.insert(files.end(), under.begin(), under.end());
+    files.push_back("ground.frag");
     background = program("fullscreen.vert", files);
-    if (!ground) return;
     setUniform(background, "plain_color", V3d(clear_color));
     setUniform(background, "plain_alpha", opaque ? 1.0 : 0.0);
     setUniform(background, "ground_height", ground->height);
     if (ground->albedo) setUniform(background, "ground_albedo", *ground->albedo);
+    files.assign({"view.glsl"});
+    files.insert(files.end(), under.begin(), under.end());
+    files.push_back("ground_shadow.frag");
+    ground_shadow = program("ground_shadow.vert", files);
+    setUniform(ground_shadow, "ground_height", ground->height);
+    setUniform(ground_shadow, "map_size", V2d(lighting->mapSize()));
 }
 
-void Renderer::State::setMaterial(const Material& material) const {
+void Renderer::State::setMaterial(const Program& program, const Material& material) {
     for (const Parameter parameter : shaderInfo(material.shader).parameters) {
         const ParameterInfo& info = parameterInfo(parameter);
         std::string uniform(info.name);
         std::ranges::replace(uniform, '-', '_');
         const V3d& value = material[parameter];
         if (info.components == 3) {
-            setUniform(surface, uniform.c_str(), value);
+            setUniform(program, uniform.c_str(), value);
         } else {
-            setUniform(surface, uniform.c_str(), value.x);
+            setUniform(program, uniform.c_str(), value.x);
         }
     }
 }
@@ -197,11 +220,28 @@ void Renderer::State::makeTargets() {
         sum = makeTexture(GL_TEXTURE_2D, GL_RGBA32F, size.x, size.y);
         to_sum = makeFramebuffer(sum);
     }
+    if (lit) makePointTargets(size);
+    if (ground) {
+        kept = makeTexture(GL_TEXTURE_2D, GL_RGBA32F, size.x, size.y);
+        to_kept = makeFramebuffer(kept);
+    }
     mean = makeTexture(GL_TEXTURE_2D, GL_RGBA32F, size.x, size.y);
     to_mean = makeFramebuffer(mean);
     GLuint array = 0;
     glCreateVertexArrays(1, &array);
     no_vertices = VertexArray(array);
+}
+
+void Renderer::State::makePointTargets(const V2i& size) {
+    to_points = makeFramebuffer(sample, depth.id());
+    std::array<GLenum, 4> buffers{GL_COLOR_ATTACHMENT0};
+    for (std::size_t i = 0; i < lit_points.size(); ++i) {
+        lit_points[i] = makeTexture(GL_TEXTURE_2D, GL_RGBA32F, size.x, size.y);
+        buffers[i + 1] = GL_COLOR_ATTACHMENT1 + static_cast<GLenum>(i);
+        glNamedFramebufferTexture(to_points.id(), buffers[i + 1], lit_points[i].id(), 0);
+    }
+    glNamedFramebufferDrawBuffers(to_points.id(), static_cast<GLsizei>(buffers.size()),
+                                  buffers.data());
 }
 
 void Renderer::State::drawFullscreen(const Program& program) const {
@@ -242,14 +282,53 @@ void setView(const Program& program, const CameraRays& rays, const V2d& offset) 
     setUniform(program, "step_y", rays.step_y);
 }
 
+// Adds the batch's lights to the object's samples: a full-screen pass behind nothing but them.
+void Renderer::State::lightSurface(const CameraRays& rays, const V2d& offset, const V2d& jitter,
+                                   int batch) const {
+    setView(under_lights, rays, offset);
+    lighting->setUniforms(under_lights, batch, jitter);
+    for (GLuint i = 0; i < lit_points.size(); ++i)
+        glBindTextureUnit(4 + i, lit_points[i].id());
+    glDepthFunc(GL_GREATER);
+    glDepthMask(GL_FALSE);
+    glEnable(GL_BLEND);
+    drawFullscreen(under_lights);
+    glDisable(GL_BLEND);
+    glDepthMask(GL_TRUE);
+    glDepthFunc(GL_LEQUAL);
+}
+
+// What the batch's lights are kept from shining on the ground, light by light where its map lies.
+void Renderer::State::drawGroundShadow(const CameraRays& rays, const V2d& offset,
+                                       const V2d& jitter, int batch) const {
+    glBindFramebuffer(GL_FRAMEBUFFER, to_kept.id());
+    const std::array<float, 4> nothing{};
+    glClearBufferfv(GL_COLOR, 0, nothing.data());
+    setView(ground_shadow, rays, offset);
+    lighting->setUniforms(ground_shadow, batch, jitter);
+    setUniform(ground_shadow, "eye", rays.eye);
+    // Whatever box is before the eye: depth is not used.
+    const V3f ahead(rays.eye + rays.forward);
+    setUniform(ground_shadow, "clip_from_world", *clipFromWorld(rays, {ahead, ahead}, jitter));
+    glEnable(GL_CLIP_DISTANCE0);
+    glEnable(GL_BLEND);
+    glUseProgram(ground_shadow.id());
+    glBindVertexArray(no_vertices.id());
+    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, lighting->viewCount(batch));
+    glDisable(GL_BLEND);
+    glDisable(GL_CLIP_DISTANCE0);
+    glBindTextureUnit(7, kept.id());
+}
+
 // One sample a pixel of a tile. `jitter` is the sample's place from the pixel's centre. The
 // background comes last, at the far plane, so that it is looked up only where it is seen. Batches
 // after the first add what their lights give, and no alpha.
 void Renderer::State::drawSample(const CameraRays& rays, const V2i& tile, const V2d& jitter,
                                  int batch) const {
-    glBindFramebuffer(GL_FRAMEBUFFER, to_sample.id());
     glViewport(-tile.x, -tile.y, options.width, options.height);
     const V2d offset = V2d(tile) + jitter - rays.centre;
+    if (ground) drawGroundShadow(rays, offset, jitter, batch);
+    glBindFramebuffer(GL_FRAMEBUFFER, to_sample.id());
     if (!background || batch > 0) {
         const V3f color_behind = batch > 0 ? V3f(0) : clear_color;
         const std::array<float, 4> color{color_behind.x, color_behind.y, color_behind.z,
@@ -259,20 +338,21 @@ void Renderer::State::drawSample(const CameraRays& rays, const V2i& tile, const 
     const float far_depth = 1;
     glClearBufferfv(GL_DEPTH, 0, &far_depth);
     glEnable(GL_DEPTH_TEST);
+    if (lit) glBindFramebuffer(GL_FRAMEBUFFER, to_points.id());
+    glColorMaski(0, batch == 0, batch == 0, batch == 0, batch == 0);
     setView(surface, rays, offset);
-    if (lit) lighting->setUniforms(surface, batch);
-    const GLboolean adds = batch == 0 || lit;
-    glColorMask(adds, adds, adds, batch == 0);
     if (mesh) {
         drawMesh(rays, jitter);
     } else {
         drawSphere(rays, tile);
     }
-    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glColorMaski(0, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glBindFramebuffer(GL_FRAMEBUFFER, to_sample.id());
+    if (lit) lightSurface(rays, offset, jitter, batch);
     if (background && (batch == 0 || ground)) {
         setView(background, rays, offset);
         setUniform(background, "tile_origin", tile);
-        if (ground) lighting->setUniforms(background, batch);
+        if (ground) lighting->setUniforms(background, batch, jitter);
         drawFullscreen(background);
     }
     glDisable(GL_DEPTH_TEST);
@@ -307,8 +387,6 @@ void Renderer::State::placeLights(const CameraRays& rays) {
     if (!ground) return;
     setUniform(background, "eye", rays.eye);
     setUniform(background, "ground_irradiance", lighting->groundIrradiance());
-    const double radius = 0.5 * V3d(box.size()).length();
-    setUniform(background, "ground_reach", rays.eye.length() + kGroundReach * radius);
 }
 
 void Renderer::State::drawFrame(const Camera& camera, Image& frame) {
