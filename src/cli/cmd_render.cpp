@@ -30,7 +30,7 @@ void runRender(const RenderOptions& options) {
     const WriteOptions how = writeOptions(options.output, options.common);
     requireFitting(options.display, options.output);
     FrameOptions frame = options.picture.frame;
-    frame.shadow_size = options.lights.shadow_size;
+    frame.shadow_size = options.lights.shadow_size.value_or(0);
     std::optional<Image> plate;
     if (!options.lights.plate.empty()) {
         plate = plateOf(session, options.lights);

@@ -28,7 +28,7 @@ Error usage(const std::string& problem) {
 }
 
 int shadowSize(const FrameOptions& options) {
-    if (options.shadow_size) return *options.shadow_size;
+    if (options.shadow_size > 0) return options.shadow_size;
     int size = 256;
     while (size < 2048 && 4 * size < 3 * options.height)
         size *= 2;

@@ -16,10 +16,10 @@ struct FrameOptions {
     int width = 512;
     int height = 512;
     int samples = 16; ///< shaded samples a pixel; the picture is their mean (a box of one pixel)
-    /// Texels a side of shadow maps; without it the power of two that is at least 3/4 of the frame's
-    /// height, 256 to 2048.
-    std::optional<int> shadow_size;
     std::optional<std::filesystem::path> shader_folder; ///< replaces built-in shaders, file by file
+    /// Texels a side of shadow maps; 0: the power of two that is at least 3/4 of the frame's height,
+    /// 256 to 2048.
+    int shadow_size = 0;
 };
 
 /// A scene on the graphics device, ready to be drawn. The context must be current and outlive it, and
