@@ -73,7 +73,6 @@ ViewRecord recordOf(const ShadowView& view, std::size_t light) {
 Lighting::Lighting(const Scene& scene, int map_size,
                    const std::optional<std::filesystem::path>& shader_folder)
     : local_(std::ranges::any_of(scene.lights, isLocal)),
-      caster_{bounds(scene.object), 1},
       maps_needed_(scene.object.mesh),
       map_size_(map_size) {
     if (maps_needed_) {

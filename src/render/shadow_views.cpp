@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace ibl {
 namespace {
@@ -21,13 +22,22 @@ Frame frameAbout(const V3d& towards) {
     return {right, towards.cross(right), towards};
 }
 
-std::array<V3d, 8> corners(const Box3f& box) {
-    std::array<V3d, 8> points;
-    for (std::size_t i = 0; i < 8; ++i) {
-        points[i] = {i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y,
-                     i & 4 ? box.max.z : box.min.z};
+struct Interval {
+    double least = std::numeric_limits<double>::infinity(), most = -least;
+};
+
+// Of the caster's points from its centre along an axis, not narrower than a thousandth of it.
+Interval extent(const Caster& caster, const V3d& axis) {
+    Interval interval;
+    for (const V3f& p : caster.points) {
+        const double along = axis.dot(V3d(p) - caster.centre);
+        interval.least = std::min(interval.least, along);
+        interval.most = std::max(interval.most, along);
     }
-    return points;
+    if (caster.points.empty()) interval = {-caster.radius, caster.radius};
+    const double lacking = 1e-3 * caster.radius - (interval.most - interval.least);
+    if (lacking > 0) interval = {interval.least - 0.5 * lacking, interval.most + 0.5 * lacking};
+    return interval;
 }
 
 // From the columns that give clip x, y, z and w of (p, 1).
@@ -50,23 +60,20 @@ ShadowView viewOf(const std::array<V3d, 4>& columns, const std::array<double, 4>
 
 ShadowView orthographic(const V3d& towards, const Caster& caster, int size) {
     const Frame frame = frameAbout(towards);
-    const V3d centre(caster.box.center());
-    const V3d half = V3d(caster.box.size()) * 0.5;
-    // The box and the sphere both hold the caster: the nearer of the two along each axis.
-    const auto extent = [&](const V3d& axis) {
-        const double of_box = std::abs(axis.x) * half.x + std::abs(axis.y) * half.y +
-                              std::abs(axis.z) * half.z;
-        return std::max(std::min(of_box, caster.radius), 1e-3 * caster.radius);
-    };
     const double widen = size / (size - 2 * kMargin);
-    const double x = extent(frame.right) * widen, y = extent(frame.up) * widen;
-    const double z = extent(towards) * 1.01;
-    const std::array<V3d, 4> columns{frame.right / x, frame.up / y, towards / -z, V3d(0)};
-    ShadowView view = viewOf(columns,
-                             {-columns[0].dot(centre), -columns[1].dot(centre),
-                              -columns[2].dot(centre), 1},
-                             size);
-    view.texel = 2 * std::max(x, y) / size;
+    std::array<V3d, 4> columns{V3d(0), V3d(0), V3d(0), V3d(0)}; // w is 1
+    std::array<double, 4> constants{0, 0, 0, 1};
+    const std::array<V3d, 3> axes{frame.right, frame.up, -towards};
+    double widest = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Interval span = extent(caster, axes[i]);
+        const double half = 0.5 * (span.most - span.least) * (i < 2 ? widen : 1.01);
+        if (i < 2) widest = std::max(widest, half);
+        columns[i] = axes[i] / half;
+        constants[i] = -(axes[i].dot(caster.centre) + 0.5 * (span.least + span.most)) / half;
+    }
+    ShadowView view = viewOf(columns, constants, size);
+    view.texel = 2 * widest / size;
     return view;
 }
 
@@ -94,41 +101,30 @@ ShadowView perspective(const V3d& eye, const Frame& frame, double tan_x, double 
 }
 
 ShadowView fittedPerspective(const V3d& eye, const Caster& caster, int size) {
-    const V3d centre(caster.box.center());
-    const V3d offset = eye - centre;
-    const double distance = offset.length();
-    const Frame frame = frameAbout(offset / distance);
-    const double of_sphere =
-        caster.radius / std::sqrt(distance * distance - caster.radius * caster.radius);
-    double tan_x = 0, tan_y = 0;
-    for (const V3d& corner : corners(caster.box)) {
-        const V3d q = corner - eye;
+    const double radius = caster.radius, distance = (eye - caster.centre).length();
+    const Frame frame = frameAbout((eye - caster.centre) / distance);
+    const double of_sphere = radius / std::sqrt(distance * distance - radius * radius);
+    double tan_x = caster.points.empty() ? of_sphere : 1e-3 * of_sphere, tan_y = tan_x;
+    for (const V3f& p : caster.points) {
+        const V3d q = V3d(p) - eye;
         const double depth = -frame.towards.dot(q);
-        if (depth <= 0) {
-            tan_x = tan_y = of_sphere;
-            break;
-        }
         tan_x = std::max(tan_x, std::abs(frame.right.dot(q)) / depth);
         tan_y = std::max(tan_y, std::abs(frame.up.dot(q)) / depth);
     }
-    const auto bounded = [&](double t) {
-        return std::max(std::min(t, of_sphere), 1e-3 * of_sphere);
-    };
-    const Depths depths{0.99 * (distance - caster.radius), 1.01 * (distance + caster.radius)};
-    return perspective(eye, frame, bounded(tan_x), bounded(tan_y), depths, size);
+    return perspective(eye, frame, tan_x, tan_y,
+                       {0.99 * (distance - radius), 1.01 * (distance + radius)}, size);
 }
 
 } // namespace
 
 Caster casterOf(const Mesh& mesh) {
-    Caster caster;
+    Box3f box;
     for (const V3f& p : mesh.positions)
-        caster.box.extendBy(p);
-    const V3f centre = caster.box.center();
-    double square = 0;
+        box.extendBy(p);
+    Caster caster{V3d(box.center()), 0, mesh.positions};
     for (const V3f& p : mesh.positions)
-        square = std::max(square, static_cast<double>((p - centre).length2()));
-    caster.radius = std::max(std::sqrt(square) * (1 + 1e-6), 1e-30);
+        caster.radius = std::max(caster.radius, (V3d(p) - caster.centre).length2());
+    caster.radius = std::max(std::sqrt(caster.radius) * (1 + 1e-6), 1e-30);
     return caster;
 }
 
@@ -136,7 +132,7 @@ std::vector<ShadowView> shadowViews(const SceneLight& light, const Caster& caste
     if (light.type == LightType::directional) {
         return {orthographic(light.direction, caster, size)};
     }
-    const double distance = (light.position - V3d(caster.box.center())).length();
+    const double distance = (light.position - caster.centre).length();
     if (distance > 1.1 * caster.radius) return {fittedPerspective(light.position, caster, size)};
     std::vector<ShadowView> views;
     const Depths depths{1e-3 * caster.radius, 1.01 * (distance + caster.radius)};

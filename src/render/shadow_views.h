@@ -6,19 +6,22 @@
 
 #include <Imath/ImathMatrix.h>
 
+#include <span>
 #include <vector>
 
 namespace ibl {
 
 using Imath::M44d;
 
-/// What casts shadows, as far as its maps are fitted to it.
+/// What casts shadows, as far as its maps are fitted to it: points, or, where there are none, all of
+/// a sphere.
 struct Caster {
-    Box3f box;
-    double radius = 1; ///< of a sphere about the box's centre that holds all of it
+    V3d centre{0, 0, 0};
+    double radius = 1; ///< of a sphere about the centre that holds everything
+    std::span<const V3f> points;
 };
 
-/// Bounds of a mesh, each point looked at.
+/// That of a mesh, which must outlive it.
 Caster casterOf(const Mesh& mesh);
 
 /// One shadow map: row vectors p M, as Imath multiplies. All of the caster lies within its edges,
@@ -32,7 +35,7 @@ struct ShadowView {
     bool perspective = false;
 };
 
-/// The maps of size x size texels that a light needs: one, orthographic for a directional light and
+/// The maps of size x size texels, 16 or more, that a light needs: one, orthographic for a directional light and
 /// perspective otherwise; but six about a point or spot light that stands within the caster's
 /// sphere or close to it: those that look along +X -X +Y -Y +Z -Z.
 std::vector<ShadowView> shadowViews(const SceneLight& light, const Caster& caster, int size);
