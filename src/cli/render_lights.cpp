@@ -40,13 +40,13 @@ void requireLightUse(const LightArguments& arguments, const Material& material,
     const bool lit = shaderInfo(material.shader).lit;
     const std::string shader(shaderInfo(material.shader).name);
     if (arguments.lights.empty()) {
-        if (lit)
-            throw usage("--shader " + shader + " is lit by lights; give --lights N or a file");
+        if (lit) throw usage("--shader " + shader + " is lit by lights; give --lights N or a file");
         if (arguments.ground) throw usage("--ground is lit by lights; give --lights N or a file");
         return;
     }
     if (!lit && !arguments.ground) {
-        throw usage("--lights: --shader " + shader + " is not lit by lights; choose one that is, "
+        throw usage("--lights: --shader " + shader +
+                    " is not lit by lights; choose one that is, "
                     "add --ground, or leave --lights out");
     }
     if (arguments.ground_albedo && picture.background == "none") {
@@ -72,9 +72,9 @@ std::vector<SceneLight> lightsOf(Session& session, const LightArguments& argumen
     Source source = openSource(arguments.lights);
     readWhole(source);
     session.addInput(arguments.lights);
-    std::vector<SceneLight> lights = readSceneLights(
-        {reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size()},
-        arguments.lights);
+    std::vector<SceneLight> lights =
+        readSceneLights({reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size()},
+                        arguments.lights);
     if (lights.empty()) throw inputError(arguments.lights, "holds no lights; give some");
     return lights;
 }

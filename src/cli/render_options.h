@@ -63,8 +63,8 @@ struct LightArguments {
 /// `--lights`, `--light-method`, `--shadow-size`, `--ground`, `--ground-height`, `--ground-albedo`,
 /// `--plate`; after bindPicture().
 void bindLightOptions(CLI::App& app, LightArguments& arguments);
-/// Throws Error (usage) for lights that light nothing, for what needs lights and has none, and for a
-/// number that is none of lights; for an albedo of the ground where nothing is behind it.
+/// Throws Error (usage) for lights that light nothing, for what needs lights and has none, and for
+/// a number that is none of lights; for an albedo of the ground where nothing is behind it.
 void requireLightUse(const LightArguments& arguments, const Material& material,
                      const PictureArguments& picture);
 std::vector<SceneLight> lightsOf(Session& session, const LightArguments& arguments,

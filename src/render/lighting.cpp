@@ -122,8 +122,9 @@ void Lighting::chooseLights(const Scene& scene, const V3d& eye) {
 // A picture without lights has one batch, of none.
 void Lighting::makeBatches() {
     const auto map_bytes = static_cast<std::size_t>(map_size_) * map_size_ * sizeof(float);
-    const std::size_t most_views =
-        maps_needed_ && !local_ ? std::clamp(kMapBytes / map_bytes, std::size_t{1}, kBatch) : kBatch;
+    const std::size_t most_views = maps_needed_ && !local_
+                                       ? std::clamp(kMapBytes / map_bytes, std::size_t{1}, kBatch)
+                                       : kBatch;
     batches_.clear();
     std::size_t light = 0;
     do {

@@ -138,7 +138,8 @@ void Renderer::State::makePrograms(const Scene& scene) {
     const auto& folder = options.shader_folder;
     const auto program = [&](std::string_view vertex, std::vector<std::string_view> fragment) {
         std::vector<std::string_view> vertex_files{vertex};
-        if (vertex == "ground_shadow.vert") vertex_files.insert(vertex_files.begin(), "light_blocks.glsl");
+        if (vertex == "ground_shadow.vert")
+            vertex_files.insert(vertex_files.begin(), "light_blocks.glsl");
         return makeProgram({vertex_files, std::move(fragment), definitions, {}}, folder);
     };
     std::vector<std::string_view> files{"view.glsl", "lookup.glsl", "maps.glsl"};
@@ -153,8 +154,10 @@ void Renderer::State::makePrograms(const Scene& scene) {
         setMaterial(under_lights, scene.material);
     }
     makeBackground(scene, program);
+    define({"KEEP_POSITIVE " + std::to_string(ground && ground->albedo)});
     resolve = program("fullscreen.vert", {"resolve.frag"});
-    if (options.samples > 1 || lighting) accumulate = program("fullscreen.vert", {"accumulate.frag"});
+    if (options.samples > 1 || lighting)
+        accumulate = program("fullscreen.vert", {"accumulate.frag"});
     // Each sample goes into the sum by the weight 2^-k, where 2^k >= samples.
     const double weight = std::exp2(-std::ceil(std::log2(options.samples)));
     if (accumulate) setUniform(accumulate, "weight", weight);
@@ -299,8 +302,8 @@ void Renderer::State::lightSurface(const CameraRays& rays, const V2d& offset, co
 }
 
 // What the batch's lights are kept from shining on the ground, light by light where its map lies.
-void Renderer::State::drawGroundShadow(const CameraRays& rays, const V2d& offset,
-                                       const V2d& jitter, int batch) const {
+void Renderer::State::drawGroundShadow(const CameraRays& rays, const V2d& offset, const V2d& jitter,
+                                       int batch) const {
     glBindFramebuffer(GL_FRAMEBUFFER, to_kept.id());
     const std::array<float, 4> nothing{};
     glClearBufferfv(GL_COLOR, 0, nothing.data());
@@ -358,8 +361,8 @@ void Renderer::State::drawSample(const CameraRays& rays, const V2i& tile, const 
     glDisable(GL_DEPTH_TEST);
 }
 
-// All samples of a tile under all batches of lights; they end up in `sum`, or in `sample` when there
-// is but one.
+// All samples of a tile under all batches of lights; they end up in `sum`, or in `sample` when
+// there is but one.
 void Renderer::State::drawTile(const CameraRays& rays, const V2i& tile) {
     const int batches = lighting ? lighting->batchCount() : 1;
     bool first = true;

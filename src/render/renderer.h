@@ -17,18 +17,18 @@ struct FrameOptions {
     int height = 512;
     int samples = 16; ///< shaded samples a pixel; the picture is their mean (a box of one pixel)
     std::optional<std::filesystem::path> shader_folder; ///< replaces built-in shaders, file by file
-    /// Texels a side of shadow maps; 0: the power of two that is at least 3/4 of the frame's height,
-    /// 256 to 2048.
+    /// Texels a side of shadow maps; 0: the power of two that is at least 3/4 of the frame's
+    /// height, 256 to 2048.
     int shadow_size = 0;
 };
 
-/// A scene on the graphics device, ready to be drawn. The context must be current and outlive it, and
-/// so must a scene with lights.
+/// A scene on the graphics device, ready to be drawn. The context must be current and outlive it,
+/// and so must a scene with lights.
 ///
 /// Throws Error: usage for frames the device cannot draw (a side over its limit, samples < 1), for
-/// a background image of another size, for a missing map, and for a ground that cuts the object or a
-/// lit material without lights; input for shaders from the folder that
-/// do not compile, with file and line, and for probes larger than the device's textures.
+/// a background image of another size, for a missing map, and for a ground that cuts the object or
+/// a lit material without lights; input for shaders from the folder that do not compile, with file
+/// and line, and for probes larger than the device's textures.
 class Renderer {
 public:
     Renderer(const EglContext& context, const Scene& scene, const FrameOptions& options);

@@ -27,8 +27,8 @@ using Background = std::variant<ProbeBackground, NoBackground, ColorBackground, 
 struct Ground {
     double height = -1; ///< y; no part of the object lies below
     /// With it, the light that the object takes away is E albedo / pi; without it, the ground
-    /// reflects as it looks in each pixel: the background is scaled by the irradiance with over that
-    /// without the object.
+    /// reflects as it looks in each pixel: the background is scaled by the irradiance with over
+    /// that without the object.
     std::optional<V3d> albedo;
 };
 

@@ -91,10 +91,10 @@ ShadowView perspective(const V3d& eye, const Frame& frame, double tan_x, double 
     const double a = (depths.farthest + depths.nearest) / span;
     const double b = -2 * depths.farthest * depths.nearest / span;
     const std::array<V3d, 4> columns{frame.right / tan_x, frame.up / tan_y, along * a, along};
-    ShadowView view = viewOf(columns,
-                             {-columns[0].dot(eye), -columns[1].dot(eye),
-                              -columns[2].dot(eye) + b, -along.dot(eye)},
-                             size);
+    ShadowView view = viewOf(
+        columns,
+        {-columns[0].dot(eye), -columns[1].dot(eye), -columns[2].dot(eye) + b, -along.dot(eye)},
+        size);
     view.texel = 2 * std::max(tan_x, tan_y) / size;
     view.perspective = true;
     return view;

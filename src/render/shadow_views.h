@@ -13,8 +13,8 @@ namespace ibl {
 
 using Imath::M44d;
 
-/// What casts shadows, as far as its maps are fitted to it: points, or, where there are none, all of
-/// a sphere.
+/// What casts shadows, as far as its maps are fitted to it: points, or, where there are none, all
+/// of a sphere.
 struct Caster {
     V3d centre{0, 0, 0};
     double radius = 1; ///< of a sphere about the centre that holds everything
@@ -35,9 +35,9 @@ struct ShadowView {
     bool perspective = false;
 };
 
-/// The maps of size x size texels, 16 or more, that a light needs: one, orthographic for a directional light and
-/// perspective otherwise; but six about a point or spot light that stands within the caster's
-/// sphere or close to it: those that look along +X -X +Y -Y +Z -Z.
+/// The maps of size x size texels, 16 or more, that a light needs: one, orthographic for a
+/// directional light and perspective otherwise; but six about a point or spot light that stands
+/// within the caster's sphere or close to it: those that look along +X -X +Y -Y +Z -Z.
 std::vector<ShadowView> shadowViews(const SceneLight& light, const Caster& caster, int size);
 
 } // namespace ibl

@@ -51,9 +51,9 @@ Mesh ballMesh(int rings) {
     };
     for (int i = 0; i < rings; ++i) {
         for (int k = 0; k < spokes; ++k) {
-            mesh.indices.insert(mesh.indices.end(), {corner(i, k), corner(i + 1, k),
-                                                     corner(i + 1, k + 1), corner(i, k),
-                                                     corner(i + 1, k + 1), corner(i, k + 1)});
+            mesh.indices.insert(mesh.indices.end(),
+                                {corner(i, k), corner(i + 1, k), corner(i + 1, k + 1), corner(i, k),
+                                 corner(i + 1, k + 1), corner(i, k + 1)});
         }
     }
     return mesh;
@@ -109,7 +109,7 @@ std::vector<std::optional<double>> litCosines(const Mesh& mesh, const Camera& ca
 // A pixel whose neighbours are, by ray tracing, lit or shadowed within `tolerance` of it must come
 // out so: no acne on what is lit, and no light in what is shadowed.
 int expectShadowsAsTraced(const Mesh& mesh, const V3d& towards, double tolerance,
-                           const std::string& name) {
+                          const std::string& name) {
     const int size = 56;
     const V3d light = towards.normalized();
     const Camera camera = orbitCamera(35, 28, 3.2, V3d(0), 40);
@@ -139,7 +139,8 @@ int expectShadowsAsTraced(const Mesh& mesh, const V3d& towards, double tolerance
 
 TEST(Shadows, OnTheObjectItselfAreAsTraced) {
     int ball = 0, cube = 0, torus = 0;
-    for (const V3d& light : {V3d(1, 1, 0.3), V3d(-0.6, 0.2, 0.7), V3d(0.2, 2, -0.5), V3d(-1, 0.3, -0.4)}) {
+    for (const V3d& light :
+         {V3d(1, 1, 0.3), V3d(-0.6, 0.2, 0.7), V3d(0.2, 2, -0.5), V3d(-1, 0.3, -0.4)}) {
         // What a facet's plane and its interpolated normals differ by at the terminator.
         ball += expectShadowsAsTraced(ballMesh(32), light, 0.05, "ball");
         cube += expectShadowsAsTraced(*builtinObject("cube")->mesh, light, 2e-3, "cube");
@@ -238,7 +239,8 @@ TEST(Shadows, OfPointAndSpotLights) {
 // A roof over everything keeps all light of the lights above it: the sum of their irradiances.
 TEST(Shadows, ARoofKeepsAllLightFromTheGround) {
     Mesh roof;
-    for (const V3f& p : {V3f(-1e3, 1, -1e3), V3f(-1e3, 1, 1e3), V3f(1e3, 1, 1e3), V3f(1e3, 1, -1e3)}) {
+    for (const V3f& p :
+         {V3f(-1e3, 1, -1e3), V3f(-1e3, 1, 1e3), V3f(1e3, 1, 1e3), V3f(1e3, 1, -1e3)}) {
         roof.positions.push_back(p);
         roof.normals.emplace_back(0, 1, 0);
     }
@@ -262,6 +264,10 @@ TEST(Shadows, ARoofKeepsAllLightFromTheGround) {
     for (const float v : dark.pixels)
         ASSERT_NEAR(v, 2 - 0.5 / kPi * sum, 1e-5);
     EXPECT_EQ(renderer.lightCounts().given, static_cast<int>(lights.size()));
+    scene.background = ColorBackground(0.01f, 0.01f, 0.01f); // less than is lost
+    for (const float v : draw(scene, camera, 4, 1).pixels)
+        ASSERT_EQ(v, 0);
+    scene.background = ColorBackground(2, 2, 2);
     scene.ground->albedo.reset(); // it looks as bright as what is behind
     for (const float v : draw(scene, camera, 4, 1).pixels)
         ASSERT_NEAR(v, 0, 2e-5);
@@ -273,7 +279,8 @@ TEST(Shadows, ARoofKeepsAllLightFromTheGround) {
 
 // A light inside a closed object, whose shadow takes maps on six sides.
 TEST(Shadows, OfALightInsideTheObjectAreEverywhere) {
-    Scene scene = litScene({lamp(V3d(0.1, 0.05, -0.1), V3d(4))}, *builtinObject("dodecahedron")->mesh);
+    Scene scene =
+        litScene({lamp(V3d(0.1, 0.05, -0.1), V3d(4))}, *builtinObject("dodecahedron")->mesh);
     scene.background = ColorBackground(1, 1, 1);
     scene.ground = Ground{-1.2, std::nullopt};
     const Camera camera = orbitCamera(20, 35, 8, V3d(0), 60);
