@@ -10,7 +10,7 @@ vec3 brdf(vec3 n, vec3 l, vec3 v) {
     vec3 along_u, along_v;
     tangents(n, along_u, along_v);
     vec3 h = normalize(l + v);
-    float nl = dot(n, l), nv = max(dot(n, v), 0.0), hl = max(dot(h, l), 1e-4);
+    float nl = dot(n, l), nv = max(dot(n, v), 0.0), hl = clamp(dot(h, l), 1e-4, 1.0);
     float hu = dot(h, along_u), hv = dot(h, along_v), hn = clamp(dot(h, n), 0.0, 1.0);
     float power = (exponent_u * hu * hu + exponent_v * hv * hv) / max(hu * hu + hv * hv, 1e-12);
     float lobe = sqrt((exponent_u + 1.0) * (exponent_v + 1.0)) / (8.0 * pi) * pow(hn, power) /

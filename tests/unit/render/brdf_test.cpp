@@ -269,6 +269,28 @@ TEST(Brdf, ShadersAreTheirClosedForms) {
     }
 }
 
+// Where rounding takes cosines beyond 1 or to 0: light, eye and normal in one line, and grazing.
+TEST(Brdf, AreFiniteInEveryCorner) {
+    softwareContext();
+    Passes passes({});
+    std::mt19937 random(13);
+    for (const auto& [shader, formula] : kFormulas) {
+        std::vector<Directions> list(kPairs);
+        for (std::size_t i = 0; i < kPairs; ++i) {
+            Directions& d = list[i];
+            d.n = above(V3d(0, 1, 0), random);
+            const V3d u = tangentU(d.n);
+            d.l = i % 4 == 0 ? (u + d.n * 1e-5).normalized() : above(d.n, random);
+            d.v = i % 4 == 1 ? (-u - d.n * 0.01).normalized() : (i % 4 == 2 ? d.l : d.n);
+            if (i % 4 == 3) d.l = d.n;
+        }
+        for (const V3d& f : byShader(passes, Material(shader), list)) {
+            ASSERT_TRUE(f.x >= 0 && f.x < 1e8 && f.y >= 0 && f.z >= 0)
+                << shaderInfo(shader).name << " " << f;
+        }
+    }
+}
+
 TEST(Brdf, AreReciprocal) {
     softwareContext();
     Passes passes({});
