@@ -1,6 +1,5 @@
 // Ashikhmin and Shirley 2000, "An anisotropic Phong BRDF model": their equations 4 and 5, with Schlick's
 // Fresnel term on f0. The base layer gets what the coat lets through, so that it needs no reflectivity.
-uniform vec3 base_color;
 uniform vec3 f0;
 uniform float exponent_u;
 uniform float exponent_v;

@@ -1,7 +1,6 @@
 // Blinn 1977: ks N (n.h)^n, h halfway between light and eye. N = (n + 2)(n + 4) / (8 pi (2^(-n/2) + n)) makes
 // the integral over cosine-weighted directions ks at normal incidence, where it is largest: there n.h is
 // cos(t/2), and 2 pi int cos^n(t/2) cos t sin t dt from 0 to pi/2 is 1/N.
-uniform vec3 base_color;
 uniform vec3 specular_color;
 uniform float reflectivity;
 uniform float exponent;

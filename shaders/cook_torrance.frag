@@ -2,7 +2,6 @@
 // V-grooves (Blinn 1977), and the dielectric Fresnel reflectance of the index that has the reflectance f0
 // at normal incidence, a channel at a time. F D G / (4 (n.l)(n.v)) with D normalised to
 // int D (n.h) dh = 1; their paper has 1/pi for 1/4 with D without its 1/pi, four times as much.
-uniform vec3 base_color;
 uniform vec3 f0;
 uniform float reflectivity;
 uniform float slope;

@@ -4,7 +4,7 @@
 // reflect as it looks: then the picture is scaled by the irradiance with over that without the object.
 // Over nothing the shadow is alpha, with black, by the luminance of that ratio. Defined: GROUND_ALBEDO
 // (known), GROUND_ALPHA (over nothing).
-layout(binding = 7) uniform sampler2D kept; // from the ground, by this batch's lights
+layout(binding = 9) uniform sampler2D kept; // from the ground, by this batch's lights
 uniform vec3 ground_irradiance;             // of all directional lights, without the object
 #if GROUND_ALBEDO
 uniform vec3 ground_albedo;

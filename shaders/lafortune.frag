@@ -1,7 +1,6 @@
 // Lafortune et al. 1997, one lobe: ks (n + 2) / (2 pi) max(Cx lx vx + Cy ly vy + Cz lz vz, 0)^n in the frame
 // of the surface. (-1, -1, 1) is Phong's lobe; |Cx|, |Cy| above Cz lean it outwards, positive ones send
 // light back. The normalisation is that of the longest lobe, so that shorter ones reflect less.
-uniform vec3 base_color;
 uniform vec3 specular_color;
 uniform float reflectivity;
 uniform float exponent;

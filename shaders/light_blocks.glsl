@@ -1,6 +1,6 @@
 // A batch of the scene's lights and their shadow maps. Defined: LIGHT_CAPACITY; LOCAL_LIGHTS, whether point
 // and spot lights are among them; SHADOW_MAPS, whether the object casts its shadow by maps. Without maps it
-// is the unit sphere at the origin.
+// is a sphere.
 struct Light {
     vec4 place;    // unit, towards the light (w = 0); or its position (w = 1)
     vec4 strength; // irradiance of a surface that faces the light; or intensity

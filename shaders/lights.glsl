@@ -1,6 +1,7 @@
 // What of the lights of shaders/light_blocks.glsl reaches a point.
 layout(binding = 8) uniform sampler2DArray shadow_maps;
 uniform int light_count;
+vec3 base_color; // of the point that is lit
 uniform vec2 texel_jitter; // of the sample, -0.5 to 0.5
 uniform bool first_batch; // light that is not of the lights belongs to the first batch
 
@@ -100,11 +101,16 @@ float visibilityOfGround(int layer, vec2 place) {
 
 #else
 
+uniform vec3 caster_centre; // of the sphere
+uniform float caster_radius;
+
 // A convex body hides no light from facets that face it.
 float visibilityOfObject(int i, vec3 p, vec3 facet, vec3 to_light, float distance) { return 1.0; }
 
 // Whether the way to the light misses the sphere, which it passes at the distance |p x l|.
 float visibilityOfGround(vec3 p, vec3 to_light, float distance) {
+    p = (p - caster_centre) / caster_radius;
+    distance /= caster_radius;
     vec3 moment = cross(p, to_light);
     float square = 1.0 - dot(moment, moment), ahead = -dot(p, to_light);
     return square > 0.0 && ahead > 0.0 && ahead - sqrt(square) < distance ? 0.0 : 1.0;

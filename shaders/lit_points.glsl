@@ -4,12 +4,13 @@
 layout(location = 1) out vec4 point_out;
 layout(location = 2) out vec4 normal_out;
 layout(location = 3) out vec4 facet_out;
-uniform vec3 base_color;
+layout(location = 4) out vec4 color_out;
 uniform vec3 ambient;
 
 vec3 shade(vec3 normal, vec3 incident) {
     point_out = vec4(surface_point, 1.0);
     normal_out = vec4(normal, 0.0);
     facet_out = vec4(facet_normal, 0.0);
-    return base_color * ambient;
+    color_out = vec4(baseColor(), 0.0);
+    return baseColor() * ambient;
 }

@@ -1,12 +1,18 @@
 // A triangle mesh with interpolated normals, seen from either side.
-in vec3 vertex_normal;
 in vec3 vertex_position;
-out vec4 color;
+in vec3 vertex_normal;
+in vec2 vertex_texcoord;
+layout(location = 0) out vec4 color;
 
 void main() {
-    vec3 normal = normalize(vertex_normal), ray = viewRay();
+    vec2 dx = dFdx(vertex_texcoord), dy = dFdy(vertex_texcoord);
+    readSurface(vertex_texcoord, dx, dy);
+    vec3 normal = bentNormal(normalize(vertex_normal), vertex_position, vertex_texcoord, dx, dy);
+    surface_depth = 1.0 / gl_FragCoord.w;
     surface_point = vertex_position;
     vec3 facet = normalize(cross(dFdx(vertex_position), dFdy(vertex_position)));
-    facet_normal = dot(facet, ray) > 0.0 ? -facet : facet;
-    color = vec4(shade(gl_FrontFacing ? normal : -normal, normalize(ray)), 1.0);
+    facet_normal = dot(facet, viewRay()) > 0.0 ? -facet : facet;
+    if (surface_alpha < alpha_cutoff) discard;
+    vec3 radiance = shade(gl_FrontFacing ? normal : -normal, normalize(viewRay()));
+    color = vec4(radiance + surface_emission, 1.0);
 }

@@ -1,7 +1,6 @@
 // Oren and Nayar 1994, the qualitative model (their equation 30, with A's 0.33): rough Lambertian facets
 // whose slopes have the deviation sigma. With s = l.v - (n.l)(n.v) the sines and the azimuth's cosine are
 // sin a tan b cos phi = s / max(n.l, n.v) where s > 0.
-uniform vec3 base_color;
 uniform float sigma; // degrees
 
 vec3 brdf(vec3 n, vec3 l, vec3 v) {

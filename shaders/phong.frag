@@ -1,7 +1,6 @@
 // Phong 1975 in the reciprocal, normalised form of Lafortune and Willems 1994:
 // ks (n + 2) / (2 pi) max(r.v, 0)^n, r the mirrored light. The lobe's integral over cosine-weighted
 // directions is ks at normal incidence and less elsewhere, where the surface cuts it off.
-uniform vec3 base_color;
 uniform vec3 specular_color;
 uniform float reflectivity;
 uniform float exponent;

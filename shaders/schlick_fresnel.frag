@@ -4,7 +4,6 @@
 // G(c) = c / (k + (1 - k) c), k = sqrt(2 r / pi); S Z G(n.l) G(n.v) / (4 pi (n.l)(n.v)), and what S leaves
 // reaches the base. His k = r, where roughness stands for both, returns up to 1.5 times what arrives at
 // grazing angles; this k is that of his approximation of Smith's shadowing for slopes of the variance r.
-uniform vec3 base_color;
 uniform vec3 f0;
 uniform float facet_roughness;
 

@@ -1,13 +1,18 @@
 #include "cli/commands.h"
+#include "cli/frame_writer.h"
 #include "cli/prefiltering.h"
 #include "cli/render_options.h"
 #include "cli/session.h"
 
+#include "core/error.h"
 #include "panorama/square_maps.h"
 
 #include <nlohmann/json.hpp>
 
 #include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
 namespace ibl {
 namespace {
@@ -16,63 +21,206 @@ struct RenderOptions {
     CommonOptions common;
     ProbeOptions probe;
     ImageOutputOptions output;
+    TurnArguments turn;
     ObjectArguments object;
     MaterialArguments material;
     CameraArguments camera;
     PictureArguments picture;
     LightArguments lights;
     DisplayArguments display;
+    FrameRange frames;
+    DeviceArguments device;
     std::string shader_folder;
 };
+
+/// The scene of a frame and what it was made from. What the next frame has under the same name is
+/// kept.
+struct LoadedScene {
+    std::string probe_name, object_name, background_name, lights_name;
+    Panorama probe, diffuse;
+    std::vector<NamedCamera> cameras;
+    Scene scene;
+};
+
+void loadProbe(Session& session, const RenderOptions& options, const std::string& name,
+               LoadedScene& loaded) {
+    ProbeOptions probe = options.probe;
+    probe.input = name;
+    loaded.probe = session.readProbe(probe);
+    // Textures hold lat-longs and cubes.
+    if (isSquareMap(loaded.probe.layout)) {
+        loaded.probe = {Layout::latlong, latlongOf(std::move(loaded.probe), session.threads())};
+    }
+    loaded.scene.probe = &loaded.probe;
+    if (!needsDiffuse(loaded.scene.material)) return;
+    const Panorama latlong{Layout::latlong, latlongOf(Panorama(loaded.probe), session.threads())};
+    const PrefilterRequest request{{Kernel::lambert, 0}, Layout::faces, 64};
+    loaded.diffuse = std::move(runPrefilter(session, latlong, {&request, 1}, {})[0].map);
+    loaded.scene.diffuse = &loaded.diffuse;
+}
+
+/// Brings the scene to a frame. Returns whether anything has to be uploaded.
+bool loadScene(Session& session, const RenderOptions& options, const FramePlace& place,
+               LoadedScene& loaded) {
+    Scene& scene = loaded.scene;
+    scene.material = materialOf(options.material, place);
+    scene.turn = turnOf(options.turn, place);
+    scene.placement = placementOf(options.object, place);
+    bool changed = false;
+    const auto renamed = [&](std::string& last, const std::string& pattern) {
+        const std::string name = nameOfFrame(pattern, options.frames, place);
+        if (name == last) return false;
+        last = name;
+        return changed = true;
+    };
+    const bool other_probe = renamed(loaded.probe_name, options.probe.input);
+    if (other_probe) loadProbe(session, options, loaded.probe_name, loaded);
+    if (renamed(loaded.lights_name, options.lights.lights) ||
+        (other_probe && isLightCount(loaded.lights_name))) {
+        scene.lights = lightsOf(session, options.lights, loaded.lights_name, loaded.probe);
+    }
+    if (renamed(loaded.object_name, options.object.name)) {
+        ObjectFile file = objectOf(session, options.object, loaded.object_name);
+        scene.object = std::move(file.object);
+        loaded.cameras = std::move(file.cameras);
+        overrideSurfaces(options.material, scene.object);
+    }
+    if (!scene.ground) scene.ground = groundOf(options.lights, scene);
+    const std::string& plate = options.lights.plate;
+    if (renamed(loaded.background_name, plate.empty() ? options.picture.background : plate)) {
+        scene.background = plate.empty() ? backgroundOf(session, loaded.background_name)
+                                         : Background(plateOf(session, loaded.background_name));
+    }
+    return changed;
+}
+
+/// What draws frames in turn: the device, the scene on it, and how pictures are shown.
+struct Drawing {
+    const EglContext& context;
+    const FrameOptions& frame;
+    LoadedScene loaded = LoadedScene();
+    std::optional<Renderer> renderer = std::nullopt;
+};
+
+/// A frame as it is written: the picture and what is known beside it.
+struct Frame {
+    Image picture;
+    std::vector<ExtraChannel> aovs;
+};
+
+Frame drawFrame(Session& session, const RenderOptions& options, const FramePlace& place,
+                Drawing& drawing) {
+    const bool changed = loadScene(session, options, place, drawing.loaded);
+    const Scene& scene = drawing.loaded.scene;
+    if (changed) {
+        session.stage("upload",
+                      [&] { drawing.renderer.emplace(drawing.context, scene, drawing.frame); });
+    } else {
+        drawing.renderer->change(scene.material, scene.turn, scene.placement);
+    }
+    const Camera camera = cameraOf(options.camera, place, drawing.frame, drawing.loaded.cameras);
+    Frame frame{session.stage("draw", [&] { return drawing.renderer->render(camera); }), {}};
+    if (!scene.lights.empty()) reportLights(session, drawing.renderer->lightCounts());
+    if (!options.picture.aovs.empty()) {
+        frame.aovs = session.stage("aov", [&] {
+            return aovChannels(options.picture, drawing.renderer->renderAovs(camera));
+        });
+    }
+    return frame;
+}
+
+WriteLosses writeFrame(OutputSet& outputs, const std::string& name, const RenderOptions& options,
+                       const Frame& frame, WriteOptions how, int threads) {
+    how.extra = frame.aovs;
+    return writeShown(outputs, name, frame.picture, options.display, how, threads);
+}
+
+/// All frames; each is encoded and written while later ones are drawn.
+void drawSequence(Session& session, const RenderOptions& options, const WriteOptions& how,
+                  Drawing& drawing, PictureDisplay& display) {
+    nlohmann::ordered_json frames = nlohmann::ordered_json::array();
+    std::vector<std::string> names;
+    FrameWriter writer(session.threads());
+    for (FramePlace place{options.frames.first, 0, options.frames.count()};
+         place.index < place.count; ++place.number, ++place.index) {
+        const auto frame = std::make_shared<Frame>(drawFrame(session, options, place, drawing));
+        const double exposure = display.show(frame->picture);
+        const std::string name = nameOfFrame(options.output.output, options.frames, place);
+        names.push_back(name);
+        frames.push_back({{"frame", place.number}, {"exposure", exposure}});
+        session.stage("wait", [&] {
+            writer.add([frame, name, &options, &how](OutputSet& outputs) {
+                return writeFrame(outputs, name, options, *frame, how, 1);
+            });
+        });
+    }
+    const auto written = session.stage("wait", [&] { return writer.finish(); });
+    for (std::size_t i = 0; i < written.size(); ++i) {
+        session.noteWritten(names[i], written[i].losses, how);
+        session.addSeconds("encode", written[i].seconds);
+    }
+    session.results()["frames"] = std::move(frames);
+}
+
+/// Refuses, before any work is done, what the first frame would be refused for.
+void requireSound(const RenderOptions& options) {
+    requireFrames(options.frames, options.output.output);
+    requireFitting(options.display, options.output, options.frames.count());
+    requireLightUse(options.lights, materialOf(options.material, {}), options.picture);
+    if (!options.picture.aovs.empty()) requireExr(options.output, "--aov");
+    if (options.camera.of_file.empty()) {
+        const FrameOptions& frame = options.picture.frame;
+        cameraRays(cameraOf(options.camera, {}, frame, {}), frame.width, frame.height);
+    } else if (options.object.fit) {
+        throw Error(ExitCode::usage, "--fit takes the object from what the file's camera looks at; "
+                                     "leave out --fit or --camera");
+    }
+}
 
 void runRender(const RenderOptions& options) {
     Session session("render", options.common);
     const WriteOptions how = writeOptions(options.output, options.common);
-    requireFitting(options.display, options.output);
+    requireSound(options);
     FrameOptions frame = options.picture.frame;
     frame.shadow_size = options.lights.shadow_size.value_or(0);
-    std::optional<Image> plate;
-    if (!options.lights.plate.empty()) {
-        plate = plateOf(session, options.lights);
-        if (!options.picture.size_given) {
-            frame.width = plate->width;
-            frame.height = plate->height;
-        }
+    std::optional<Image> plate; // of the first frame, whose size all frames have
+    const std::string plate_name =
+        nameOfFrame(options.lights.plate, options.frames, {options.frames.first, 0, 1});
+    if (!plate_name.empty() && !options.picture.size_given) {
+        plate = plateOf(session, plate_name);
+        frame.width = plate->width;
+        frame.height = plate->height;
     }
-    const Camera camera = cameraOf(options.camera);
-    cameraRays(camera, frame.width, frame.height); // refuses bad cameras
-    Scene scene;
-    scene.material = materialOf(options.material);
-    requireLightUse(options.lights, scene.material, options.picture);
-    Panorama probe = session.readProbe(options.probe);
-    // Textures hold lat-longs and cubes.
-    if (isSquareMap(probe.layout)) {
-        probe = {Layout::latlong, latlongOf(std::move(probe), session.threads())};
+    if (!options.shader_folder.empty()) frame.shader_folder = options.shader_folder;
+    const EglContext context = session.stage("context", [&] { return contextOf(options.device); });
+    if (options.common.verbose) {
+        const std::vector<std::string> devices = eglDevices();
+        for (std::size_t i = 0; i < devices.size(); ++i)
+            session.detail("EGL device " + std::to_string(i) + ": " + devices[i]);
     }
-    scene.probe = &probe;
-    scene.object = objectOf(session, options.object);
-    scene.background =
-        plate ? Background(std::move(*plate)) : backgroundOf(session, options.picture);
-    scene.lights = lightsOf(session, options.lights, probe);
-    scene.ground = groundOf(options.lights, scene.object);
-
-    Panorama diffuse;
-    if (needsDiffuse(scene.material)) {
-        const Panorama latlong{Layout::latlong, latlongOf(Panorama(probe), session.threads())};
-        const PrefilterRequest request{{Kernel::lambert, 0}, Layout::faces, 64};
-        diffuse = std::move(runPrefilter(session, latlong, {&request, 1}, {})[0].map);
-        scene.diffuse = &diffuse;
-    }
-
-    const EglContext context = session.stage("context", [] { return EglContext(); });
     session.detail("device: " + context.description());
     session.results()["device"] = context.description();
-    if (!options.shader_folder.empty()) frame.shader_folder = options.shader_folder;
-    Renderer renderer = session.stage("upload", [&] { return Renderer(context, scene, frame); });
-    Image picture = session.stage("draw", [&] { return renderer.render(camera); });
-    if (!scene.lights.empty()) reportLights(session, renderer.lightCounts());
-    showPicture(session, context, options.display, std::move(picture), std::nullopt, options.output,
-                how, frame.shader_folder);
+
+    Drawing drawing{context, frame};
+    if (plate) {
+        drawing.loaded.background_name = plate_name;
+        drawing.loaded.scene.background = std::move(*plate);
+    }
+    PictureDisplay display(session, context, options.display, frame.shader_folder);
+    if (options.frames.told) {
+        drawSequence(session, options, how, drawing, display);
+        display.handOn();
+    } else {
+        Frame drawn = drawFrame(session, options, {}, drawing);
+        display.show(drawn.picture);
+        display.handOn();
+        const std::string& name = options.output.output;
+        session.stage("write", [&] {
+            session.noteWritten(
+                name, writeFrame(session.outputs(), name, options, drawn, how, session.threads()),
+                how);
+        });
+    }
     session.finish();
 }
 
@@ -82,18 +230,21 @@ Command bindRender(CLI::App& root) {
     CLI::App* app = root.add_subcommand("render", "Draw an object under a probe, offscreen");
     auto options = std::make_shared<RenderOptions>();
     bindProbe(*app, options->probe, "--probe");
-    bindObject(*app, options->object);
-    bindMaterial(*app, options->material);
+    bindTurn(*app, options->turn, options->frames);
+    bindObject(*app, options->object, options->frames);
+    bindMaterial(*app, options->material, options->frames);
     app->add_option("--shader-folder", options->shader_folder,
                     "Folder whose files replace the built-in shaders of the same name")
         ->check(CLI::ExistingDirectory)
         ->type_name("DIR")
         ->group("Material");
-    bindCamera(*app, options->camera);
+    bindCamera(*app, options->camera, options->frames);
     bindPicture(*app, options->picture);
     bindLightOptions(*app, options->lights);
+    bindFrames(*app, options->frames);
     bindDisplay(*app, options->display);
     bindImageOutput(*app, options->output);
+    bindDevice(*app, options->device);
     bindCommon(*app, options->common);
     return {app, [options] { runRender(*options); }};
 }

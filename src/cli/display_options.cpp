@@ -16,13 +16,17 @@ namespace {
 constexpr double kStandardKey = 0.18; // middle grey
 constexpr double kStandardDelta = 1e-5;
 
-bool isPng(const ImageOutputOptions& output) {
-    std::string format = output.format;
-    if (format.empty()) format = std::filesystem::path(output.output).extension().string();
+/// In lower case, without a dot.
+std::string formatOf(const std::string& path, std::string format) {
+    if (format.empty()) format = std::filesystem::path(path).extension().string();
     if (format.starts_with('.')) format.erase(0, 1);
     for (char& c : format)
         c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return format == "png";
+    return format;
+}
+
+bool isPng(const std::string& path, const std::string& format) {
+    return formatOf(path, format) == "png";
 }
 
 void bindExposure(CLI::App& app, DisplayArguments& a) {
@@ -60,13 +64,12 @@ void bindExposure(CLI::App& app, DisplayArguments& a) {
                              ->check(CLI::Range(0.01, 1e6))
                              ->type_name("FRAMES")
                              ->group("Exposure");
-    CLI::Option* state = app.add_option("--adapt-state", a.adapt_state,
-                                        "JSON file that hands the adaptation on to the next frame; "
-                                        "made when there is none")
-                             ->needs(adapt)
-                             ->type_name("FILE")
-                             ->group("Exposure");
-    adapt->needs(state);
+    app.add_option(
+           "--adapt-state", a.adapt_state,
+           "JSON file that hands the adaptation on to the next run; made when there is none")
+        ->needs(adapt)
+        ->type_name("FILE")
+        ->group("Exposure");
 }
 
 void bindToneMap(CLI::App& app, DisplayArguments& a) {
@@ -181,7 +184,12 @@ double deltaOf(const DisplayArguments& arguments) {
     return arguments.delta.value_or(kStandardDelta);
 }
 
-void requireFitting(const DisplayArguments& a, const ImageOutputOptions& output) {
+void requireExr(const ImageOutputOptions& output, const std::string& option) {
+    if (formatOf(output.output, output.format) == "exr") return;
+    throw Error(ExitCode::usage, option + " is of EXR files; leave it out, or write .exr");
+}
+
+void requireFitting(const DisplayArguments& a, const ImageOutputOptions& output, int frames) {
     const auto refuse = [](bool idle, const std::string& option, const std::string& why) {
         if (idle) throw Error(ExitCode::usage, option + " " + why + "; leave it out");
     };
@@ -190,7 +198,12 @@ void requireFitting(const DisplayArguments& a, const ImageOutputOptions& output)
     refuse(a.key && !a.auto_exposure && info.map != ToneMap::reinhardLocal, "--key",
            "is of --exposure auto and of --tonemap reinhard-local");
     refuse(a.delta && !a.auto_exposure, "--delta", "is of --exposure auto");
-    refuse(!a.adapt_state.empty() && !a.auto_exposure, "--adapt", "is of --exposure auto");
+    refuse(a.adapt > 0 && !a.auto_exposure, "--adapt", "is of --exposure auto");
+    if (a.adapt > 0 && a.adapt_state.empty() && frames == 1) {
+        throw Error(ExitCode::usage,
+                    "--adapt: there is no frame before this one; hand its state on "
+                    "with --adapt-state");
+    }
     refuse(a.adapt_state == "-", "--adapt-state", "does not go to standard output");
     refuse(a.per && info.curve.empty(), "--per", "does nothing for the tone map " + name);
     for (const auto& [given, value] : a.tone_parameters) {
@@ -204,7 +217,7 @@ void requireFitting(const DisplayArguments& a, const ImageOutputOptions& output)
            "--display, --view, --ocio-space or --ocio-config", "is of --tonemap display");
     refuse(a.chain.bloom + a.chain.streaks == 0 && a.chain.threshold != DisplayOptions().threshold,
            "--threshold", "is of --bloom and --streaks");
-    const bool png = isPng(output);
+    const bool png = isPng(output.output, output.format);
     refuse((a.bits || a.dither) && !png, "--bits or --dither", "is of PNG files");
     if (info.map == ToneMap::display && !png) {
         throw Error(ExitCode::usage,
@@ -227,25 +240,6 @@ std::optional<double> readAdaptation(const std::string& path) {
     throw inputError(path, "is no state of adaptation; delete it to begin anew");
 }
 
-/// Stops that the picture is exposed by. Notes in the report how they came about.
-double exposureOf(Session& session, const DisplayArguments& a, const Image& picture,
-                  std::optional<double> known) {
-    if (!a.auto_exposure) return a.exposure;
-    double average = known ? *known : session.stage("expose", [&] {
-        return takePictureCensus(picture, deltaOf(a), session.threads()).log_average;
-    });
-    session.results()["log_average"] = average;
-    if (!a.adapt_state.empty()) {
-        const std::optional<double> before = readAdaptation(a.adapt_state);
-        if (before) average = adapted(*before, average, a.adapt);
-        session.results()["adapted_log_average"] = average;
-        nlohmann::ordered_json state;
-        state["log_average"] = average;
-        session.writeText(a.adapt_state, state.dump(2) + "\n");
-    }
-    return std::log2(a.key.value_or(kStandardKey) / average);
-}
-
 DisplayOptions chainOf(const DisplayArguments& a) {
     DisplayOptions chain = a.chain;
     const ToneMapInfo& info = toneMapInfo(chain.tone_map);
@@ -261,30 +255,73 @@ DisplayOptions chainOf(const DisplayArguments& a) {
 
 } // namespace
 
-void showPicture(Session& session, const EglContext& context, const DisplayArguments& arguments,
-                 Image picture, std::optional<double> log_average, const ImageOutputOptions& output,
-                 const WriteOptions& how, std::optional<std::filesystem::path> shader_folder) {
-    const double exposure = exposureOf(session, arguments, picture, log_average);
-    session.results()["exposure"] = exposure;
+PictureDisplay::PictureDisplay(Session& session, const EglContext& context,
+                               const DisplayArguments& arguments,
+                               std::optional<std::filesystem::path> shader_folder)
+    : session_(session), arguments_(arguments) {
+    if (!arguments.adapt_state.empty()) adapted_to_ = readAdaptation(arguments.adapt_state);
     DisplayOptions options = chainOf(arguments);
     if (options.tone_map == ToneMap::display) {
         if (!arguments.view.config.empty()) session.addInput(arguments.view.config);
         options.transform =
             session.stage("ocio", [&] { return loadDisplayTransform(arguments.view); });
     }
-    session.stage("display", [&] {
-        DisplayChain chain(context, options, std::move(shader_folder));
-        chain.apply(picture, exposure, session.threads());
+    chain_.emplace(context, options, std::move(shader_folder));
+}
+
+double PictureDisplay::exposureOf(const Image& picture, std::optional<double> log_average) {
+    const DisplayArguments& a = arguments_;
+    if (!a.auto_exposure) return a.exposure;
+    double average = log_average ? *log_average : session_.stage("expose", [&] {
+        return takePictureCensus(picture, deltaOf(a), session_.threads()).log_average;
     });
+    session_.results()["log_average"] = average;
+    if (a.adapt > 0) {
+        if (adapted_to_) average = adapted(*adapted_to_, average, a.adapt);
+        session_.results()["adapted_log_average"] = average;
+        adapted_to_ = average;
+    }
+    return std::log2(a.key.value_or(kStandardKey) / average);
+}
+
+double PictureDisplay::show(Image& picture, std::optional<double> log_average) {
+    const double exposure = exposureOf(picture, log_average);
+    session_.results()["exposure"] = exposure;
+    session_.stage("display", [&] { chain_->apply(picture, exposure, session_.threads()); });
+    return exposure;
+}
+
+void PictureDisplay::handOn() {
+    if (arguments_.adapt_state.empty()) return;
+    nlohmann::ordered_json state;
+    state["log_average"] = *adapted_to_;
+    session_.writeText(arguments_.adapt_state, state.dump(2) + "\n");
+}
+
+WriteLosses writeShown(OutputSet& outputs, const std::string& path, const Image& picture,
+                       const DisplayArguments& arguments, const WriteOptions& how, int threads) {
+    if (!isPng(path, how.format)) {
+        WriteOptions options = how;
+        options.threads = threads;
+        return writeImage(outputs, path, picture, options);
+    }
+    const PngOptions png{arguments.bits.value_or(8), arguments.dither,
+                         arguments.chain.tone_map == ToneMap::display};
+    writePng(outputs.add(path), picture, png, threads);
+    return {}; // pictures to look at clip
+}
+
+void showPicture(Session& session, const EglContext& context, const DisplayArguments& arguments,
+                 Image picture, std::optional<double> log_average, const ImageOutputOptions& output,
+                 const WriteOptions& how) {
+    PictureDisplay display(session, context, arguments);
+    display.show(picture, log_average);
+    display.handOn();
     session.stage("write", [&] {
-        if (!isPng(output)) {
-            session.write(output.output, picture, how);
-            return;
-        }
-        const PngOptions png{arguments.bits.value_or(8), arguments.dither,
-                             options.tone_map == ToneMap::display};
-        writePng(session.outputs().add(output.output), picture, png, session.threads());
-        session.addOutput(output.output);
+        session.noteWritten(output.output,
+                            writeShown(session.outputs(), output.output, picture, arguments, how,
+                                       session.threads()),
+                            how);
     });
 }
 

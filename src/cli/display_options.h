@@ -31,17 +31,48 @@ struct DisplayArguments {
 /// Exposure, tone map, effects and pixels of PNG files.
 void bindDisplay(CLI::App& app, DisplayArguments& arguments);
 
-/// Refuses what has no effect or does not fit together, before any work is done.
-void requireFitting(const DisplayArguments& arguments, const ImageOutputOptions& output);
+/// Refuses what has no effect or does not fit together, before any work is done. `frames`: how many
+/// are shown in turn.
+void requireFitting(const DisplayArguments& arguments, const ImageOutputOptions& output,
+                    int frames = 1);
+
+/// Refuses an option that EXR files alone have.
+void requireExr(const ImageOutputOptions& output, const std::string& option);
 
 /// The delta of the log-average.
 double deltaOf(const DisplayArguments& arguments);
 
-/// Sends a scene-linear picture through the chain and adds it to the outputs, and the state of
-/// adaptation, if one is kept. `log_average` is that of the picture, where it is known already.
+/// What makes scene-linear pictures ones to look at: exposure and display chain, for one picture or
+/// for frames in turn, to which the eye adapts.
+class PictureDisplay {
+public:
+    /// Reads the state of adaptation and the OpenColorIO config, if there are such.
+    PictureDisplay(Session& session, const EglContext& context, const DisplayArguments& arguments,
+                   std::optional<std::filesystem::path> shader_folder = std::nullopt);
+
+    /// Sends a picture through the chain, in its place, and returns the stops that it was exposed
+    /// by. `log_average` is that of the picture, where it is known already.
+    double show(Image& picture, std::optional<double> log_average = std::nullopt);
+
+    /// Adds the state of adaptation to the outputs, if one is kept.
+    void handOn();
+
+private:
+    double exposureOf(const Image& picture, std::optional<double> log_average);
+
+    Session& session_;
+    const DisplayArguments& arguments_;
+    std::optional<double> adapted_to_; ///< log-average
+    std::optional<DisplayChain> chain_;
+};
+
+/// Adds a shown picture to the set. `threads` as everywhere.
+WriteLosses writeShown(OutputSet& outputs, const std::string& path, const Image& picture,
+                       const DisplayArguments& arguments, const WriteOptions& how, int threads);
+
+/// Shows one picture and adds it to the session's outputs, with the state of adaptation.
 void showPicture(Session& session, const EglContext& context, const DisplayArguments& arguments,
                  Image picture, std::optional<double> log_average, const ImageOutputOptions& output,
-                 const WriteOptions& how,
-                 std::optional<std::filesystem::path> shader_folder = std::nullopt);
+                 const WriteOptions& how);
 
 } // namespace ibl

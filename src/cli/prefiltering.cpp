@@ -86,6 +86,7 @@ std::vector<PrefilterResult> runPrefilter(Session& session, const Panorama& latl
                                           const QualityOptions& quality) {
     PrefilterOptions options = optionsFor(quality.quality, session.threads());
     if (quality.max_error) options.max_error = *quality.max_error;
+    options.progress = session.progress("convolve");
     std::vector<PrefilterResult> results =
         session.stage("convolve", [&] { return prefilter(latlong, requests, options); });
     auto& maps = session.results()["maps"] = nlohmann::ordered_json::array();

@@ -16,10 +16,6 @@ Error usage(const std::string& what) {
     return {ExitCode::usage, what};
 }
 
-bool isCount(const std::string& text) {
-    return !text.empty() && std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
-}
-
 std::vector<SceneLight> cutOf(Session& session, const LightArguments& arguments,
                               const Panorama& probe) {
     LightRequest request;
@@ -34,6 +30,10 @@ std::vector<SceneLight> cutOf(Session& session, const LightArguments& arguments,
 }
 
 } // namespace
+
+bool isLightCount(const std::string& text) {
+    return !text.empty() && std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
+}
 
 void requireLightUse(const LightArguments& arguments, const Material& material,
                      const PictureArguments& picture) {
@@ -53,7 +53,7 @@ void requireLightUse(const LightArguments& arguments, const Material& material,
         throw usage("--ground-albedo: without a background the shadow is alpha, whatever the "
                     "albedo; leave it out");
     }
-    if (!isCount(arguments.lights)) {
+    if (!isLightCount(arguments.lights)) {
         if (arguments.method)
             throw usage("--light-method: a file's lights are cut already; leave it out");
         return;
@@ -66,34 +66,31 @@ void requireLightUse(const LightArguments& arguments, const Material& material,
 }
 
 std::vector<SceneLight> lightsOf(Session& session, const LightArguments& arguments,
-                                 const Panorama& probe) {
-    if (arguments.lights.empty()) return {};
-    if (isCount(arguments.lights)) return cutOf(session, arguments, probe);
-    Source source = openSource(arguments.lights);
+                                 const std::string& name, const Panorama& probe) {
+    if (isLightCount(name)) return cutOf(session, arguments, probe);
+    Source source = openSource(name);
     readWhole(source);
-    session.addInput(arguments.lights);
-    std::vector<SceneLight> lights =
-        readSceneLights({reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size()},
-                        arguments.lights);
-    if (lights.empty()) throw inputError(arguments.lights, "holds no lights; give some");
+    session.addInput(name);
+    std::vector<SceneLight> lights = readSceneLights(
+        {reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size()}, name);
+    if (lights.empty()) throw inputError(name, "holds no lights; give some");
     return lights;
 }
 
-std::optional<Ground> groundOf(const LightArguments& arguments, const Object& object) {
+std::optional<Ground> groundOf(const LightArguments& arguments, const Scene& scene) {
     if (!arguments.ground) return std::nullopt;
-    Ground ground;
-    ground.height = arguments.ground_height.value_or(bounds(object).min.y);
-    ground.albedo = arguments.ground_albedo;
-    return ground;
+    const double height = arguments.ground_height ? *arguments.ground_height
+                                                  : lowestPoint(scene.object, scene.placement);
+    return Ground{height, arguments.ground_albedo};
 }
 
-Image plateOf(Session& session, const LightArguments& arguments) {
-    session.addInput(arguments.plate);
+Image plateOf(Session& session, const std::string& name) {
+    session.addInput(name);
     ReadOptions how;
     how.threads = session.threads();
-    ImageFile file = session.stage("plate", [&] { return readImage(arguments.plate, how); });
+    ImageFile file = session.stage("plate", [&] { return readImage(name, how); });
     for (const std::string& text : file.notes)
-        session.note(arguments.plate, text);
+        session.note(name, text);
     return std::move(file.image);
 }
 

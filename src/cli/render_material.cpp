@@ -15,39 +15,26 @@ std::string shadersWith(Parameter parameter) {
     return names;
 }
 
-CLI::Validator inRange(const ParameterInfo& info) {
-    return CLI::Validator(
-        [&info](const std::string& text) {
-            double value = 0;
-            if (CLI::detail::lexical_cast(text, value) && value >= info.least && value <= info.most)
-                return std::string();
-            char range[64];
-            std::snprintf(range, sizeof range, "%g to %g", info.least, info.most);
-            return "'" + text + "' is not a number from " + range;
-        },
-        "");
-}
-
-void bindParameter(CLI::App& app, const ParameterInfo& info, MaterialArguments& arguments) {
+void bindParameter(CLI::App& app, const ParameterInfo& info, MaterialArguments& arguments,
+                   FrameRange& frames) {
     char standard[64];
     std::snprintf(standard, sizeof standard, " (default %g)", info.standard);
     std::string help = std::string(info.help) + ", of " + shadersWith(info.parameter) + standard;
-    app.add_option_function<std::vector<double>>(
-           "--" + std::string(info.name),
-           [&arguments, &info](const std::vector<double>& v) {
-               arguments.values[info.parameter] = v.size() == 3 ? V3d(v[0], v[1], v[2]) : V3d(v[0]);
-           },
-           help)
-        ->delimiter(',')
-        ->expected(info.components)
-        ->check(inRange(info))
+    addRamps(
+        app, "--" + std::string(info.name), info.components,
+        [&arguments, &info](const std::vector<Ramp>& v) {
+            auto& value = arguments.values[info.parameter];
+            for (std::size_t i = 0; i < 3; ++i)
+                value[i] = v[v.size() == 3 ? i : 0];
+        },
+        help, rampIn(info.least, info.most), frames)
         ->type_name(info.components == 3 ? "R,G,B" : "X")
         ->group("Material");
 }
 
 } // namespace
 
-void bindMaterial(CLI::App& app, MaterialArguments& arguments) {
+void bindMaterial(CLI::App& app, MaterialArguments& arguments, FrameRange& frames) {
     std::vector<std::string> shaders;
     for (const ShaderInfo& row : shaderTable())
         shaders.emplace_back(row.name);
@@ -59,10 +46,10 @@ void bindMaterial(CLI::App& app, MaterialArguments& arguments) {
         ->type_name("NAME")
         ->group("Material");
     for (const ParameterInfo& info : parameterTable())
-        bindParameter(app, info, arguments);
+        bindParameter(app, info, arguments, frames);
 }
 
-Material materialOf(const MaterialArguments& arguments) {
+Material materialOf(const MaterialArguments& arguments, const FramePlace& place) {
     Material material(arguments.shader);
     for (const auto& [parameter, value] : arguments.values) {
         if (!hasParameter(arguments.shader, parameter)) {
@@ -70,9 +57,19 @@ Material materialOf(const MaterialArguments& arguments) {
                                              " is of the shaders " + shadersWith(parameter) +
                                              "; leave it out");
         }
-        material[parameter] = value;
+        material[parameter] = V3d(value[0].at(place), value[1].at(place), value[2].at(place));
     }
     return material;
+}
+
+void overrideSurfaces(const MaterialArguments& arguments, Object& object) {
+    for (const auto& [parameter, value] : arguments.values) {
+        const std::string_view name = parameterInfo(parameter).name;
+        for (Part& part : object.parts) {
+            if (name == "metallic") part.surface.metallic.reset();
+            if (name == "roughness") part.surface.roughness.reset();
+        }
+    }
 }
 
 } // namespace ibl

@@ -1,34 +1,100 @@
 #include "cli/render_options.h"
 
 #include "core/error.h"
+#include "image/read.h"
 
 #include <filesystem>
 
 namespace ibl {
+namespace {
 
-void bindObject(CLI::App& app, ObjectArguments& arguments) {
-    std::string objects;
-    for (const std::string_view name : builtinObjectNames())
-        objects += std::string(name) + ", ";
-    app.add_option("--object", arguments.name, objects + "or an OBJ file")
-        ->type_name("OBJECT")
-        ->capture_default_str()
+void bindPlacement(CLI::App& app, ObjectArguments& arguments, FrameRange& frames) {
+    const auto triple = [&](const char* name, std::array<Ramp, 3>& value, double most,
+                            const char* help) {
+        addRamps(
+            app, name, 3,
+            [&value](const std::vector<Ramp>& v) { std::copy_n(v.begin(), 3, value.begin()); },
+            help, rampIn(-most, most), frames)
+            ->type_name("X,Y,Z")
+            ->group("Object");
+    };
+    triple("--translate", arguments.translate, 1e9, "Move the object, after all else");
+    triple("--rotate", arguments.rotate, 1e6, "Turn it by so many degrees about z, then x, then y");
+    addRamp(app, "--scale", arguments.scale, "Make it so many times as large", rampIn(1e-9, 1e9),
+            frames)
+        ->type_name("S")
+        ->group("Object");
+    app.add_flag("--fit", arguments.fit, "First bring it into the unit sphere at the origin")
         ->group("Object");
 }
 
-Object objectOf(Session& session, const ObjectArguments& arguments) {
-    const std::string& name = arguments.name;
-    if (std::optional<Object> builtin = builtinObject(name)) return std::move(*builtin);
+/// Lays the texture over all parts.
+void addBaseTexture(Session& session, const std::string& path, Object& object) {
+    if (object.mesh && object.mesh->texcoords.empty()) {
+        throw Error(ExitCode::usage, "--base-texture: the object has no texture coordinates; leave "
+                                     "it out, or give an object that has");
+    }
+    session.addInput(path);
+    ReadOptions how;
+    how.threads = session.threads();
+    ImageFile file = session.stage("texture", [&] { return readImage(path, how); });
+    object.parts = partsOf(object);
+    for (Part& part : object.parts)
+        part.surface.base_texture = object.textures.size();
+    object.textures.push_back({std::move(file.image), Wrap::repeat, Wrap::repeat});
+}
+
+ObjectFile readNamed(Session& session, const std::string& name) {
+    if (std::optional<Object> builtin = builtinObject(name))
+        return {std::move(*builtin), {}, {}, {}};
     std::error_code ignored;
     if (!std::filesystem::path(name).has_extension() && !std::filesystem::exists(name, ignored)) {
         std::string names;
         for (const std::string_view known : builtinObjectNames())
             names.append(" ").append(known);
         throw Error(ExitCode::usage, "--object " + name + ": no such object; there are" + names +
-                                         ", or an OBJ file");
+                                         ", or an OBJ, PLY or glTF file");
     }
-    session.addInput(name);
-    return {session.stage("mesh", [&] { return loadObj(name); })};
+    ObjectFile file = session.stage("mesh", [&] { return readObject(name, session.threads()); });
+    for (const std::string& path : file.files)
+        session.addInput(path);
+    for (const std::string& text : file.notes)
+        session.note(name, text);
+    return file;
+}
+
+} // namespace
+
+void bindObject(CLI::App& app, ObjectArguments& arguments, FrameRange& frames) {
+    std::string objects;
+    for (const std::string_view name : builtinObjectNames())
+        objects += std::string(name) + ", ";
+    app.add_option("--object", arguments.name, objects + "or an OBJ, PLY or glTF file")
+        ->type_name("OBJECT")
+        ->capture_default_str()
+        ->group("Object");
+    app.add_option("--base-texture", arguments.base_texture,
+                   "Image that the base colour is multiplied by")
+        ->type_name("FILE")
+        ->group("Object");
+    bindPlacement(app, arguments, frames);
+}
+
+Placement placementOf(const ObjectArguments& a, const FramePlace& place) {
+    const auto& [x, y, z] = a.translate;
+    const auto& [about_x, about_y, about_z] = a.rotate;
+    return {V3d(x.at(place), y.at(place), z.at(place)),
+            {about_y.at(place), about_x.at(place), about_z.at(place), false},
+            a.scale.at(place),
+            a.fit};
+}
+
+ObjectFile objectOf(Session& session, const ObjectArguments& arguments, const std::string& name) {
+    ObjectFile file = readNamed(session, name);
+    if (!arguments.base_texture.empty()) {
+        addBaseTexture(session, arguments.base_texture, file.object);
+    }
+    return file;
 }
 
 } // namespace ibl

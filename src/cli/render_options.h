@@ -2,15 +2,19 @@
 #pragma once
 
 #include "cli/display_options.h"
+#include "cli/frame_range.h"
 #include "cli/session.h"
 
 #include "lights/cut_lights.h"
 #include "lights/scene_light.h"
+#include "render/object_file.h"
 #include "render/renderer.h"
 
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace ibl {
 
@@ -18,38 +22,72 @@ struct CameraArguments {
     std::optional<V3d> eye; ///< otherwise the orbit
     V3d target{0, 0, 0};
     V3d up{0, 1, 0};
-    double azimuth = 0;
-    double elevation = 0;
-    double distance = 4;
-    double fov = 40;
+    Ramp azimuth = 0;
+    Ramp elevation = 0;
+    Ramp distance = 4;
+    Ramp fov = 40;
+    std::optional<Ramp> focal_length; ///< millimetres, instead of the field of view
+    double sensor = 36;               ///< its width
+    std::string of_file; ///< name or number of a camera of the object's file, instead of all that
 };
-void bindCamera(CLI::App& app, CameraArguments& arguments);
-Camera cameraOf(const CameraArguments& arguments);
+void bindCamera(CLI::App& app, CameraArguments& arguments, FrameRange& frames);
+/// The camera at a frame of that size. Throws Error (usage) for a camera that the file lacks.
+Camera cameraOf(const CameraArguments& arguments, const FramePlace& place,
+                const FrameOptions& frame, const std::vector<NamedCamera>& of_file);
 
 struct ObjectArguments {
     std::string name = "sphere"; ///< built in, or a file
+    std::string base_texture;    ///< file
+    std::array<Ramp, 3> translate{0, 0, 0};
+    std::array<Ramp, 3> rotate{0, 0, 0}; ///< degrees about x, y and z
+    Ramp scale = 1;
+    bool fit = false;
 };
-void bindObject(CLI::App& app, ObjectArguments& arguments);
-/// Throws Error (usage) where there is no such object.
-Object objectOf(Session& session, const ObjectArguments& arguments);
+void bindObject(CLI::App& app, ObjectArguments& arguments, FrameRange& frames);
+Placement placementOf(const ObjectArguments& arguments, const FramePlace& place);
+/// The object of that name, the arguments' own or a frame's, with the base texture. Throws Error
+/// (usage) where there is no such object.
+ObjectFile objectOf(Session& session, const ObjectArguments& arguments, const std::string& name);
+
+struct TurnArguments {
+    Ramp yaw = 0;
+    Ramp pitch = 0;
+    Ramp roll = 0;
+    bool mirror = false;
+};
+void bindTurn(CLI::App& app, TurnArguments& arguments, FrameRange& frames);
+Turn turnOf(const TurnArguments& arguments, const FramePlace& place);
+
+struct DeviceArguments {
+    bool software = false;
+    std::optional<int> number; ///< of eglDevices(); none: hardware first
+};
+void bindDevice(CLI::App& app, DeviceArguments& arguments);
+EglContext contextOf(const DeviceArguments& arguments);
 
 struct MaterialArguments {
     Shader shader = Shader::mirror;
-    std::map<Parameter, V3d> values; ///< those given
+    std::map<Parameter, std::array<Ramp, 3>> values; ///< those given
 };
 /// `--shader` and an option for each row of parameterTable().
-void bindMaterial(CLI::App& app, MaterialArguments& arguments);
+void bindMaterial(CLI::App& app, MaterialArguments& arguments, FrameRange& frames);
 /// Throws Error (usage) for a parameter that the shader does not have.
-Material materialOf(const MaterialArguments& arguments);
+Material materialOf(const MaterialArguments& arguments, const FramePlace& place);
+/// Takes from the object's parts what the arguments give otherwise: metallic and roughness.
+void overrideSurfaces(const MaterialArguments& arguments, Object& object);
 
 struct PictureArguments {
     std::string background = "probe";
     FrameOptions frame;
     bool size_given = false;
+    std::vector<std::string> aovs; ///< normal, depth, id
 };
-/// `--size`, `--samples`, `--background`.
+/// `--size`, `--samples`, `--background`, `--aov`.
 void bindPicture(CLI::App& app, PictureArguments& arguments);
-Background backgroundOf(Session& session, const PictureArguments& arguments);
+/// The channels that `--aov` asks for.
+std::vector<ExtraChannel> aovChannels(const PictureArguments& arguments, FrameAovs aovs);
+/// The background of that name: the arguments' own, or a frame's.
+Background backgroundOf(Session& session, const std::string& name);
 
 struct LightArguments {
     std::string lights; ///< a number, a file, or nothing
@@ -67,10 +105,14 @@ void bindLightOptions(CLI::App& app, LightArguments& arguments);
 /// a number that is none of lights; for an albedo of the ground where nothing is behind it.
 void requireLightUse(const LightArguments& arguments, const Material& material,
                      const PictureArguments& picture);
+/// Whether `--lights` asks for as many lights cut from the probe, and names no file.
+bool isLightCount(const std::string& text);
+/// The lights of that number or file: the arguments' own or a frame's.
 std::vector<SceneLight> lightsOf(Session& session, const LightArguments& arguments,
-                                 const Panorama& probe);
-std::optional<Ground> groundOf(const LightArguments& arguments, const Object& object);
-Image plateOf(Session& session, const LightArguments& arguments);
+                                 const std::string& name, const Panorama& probe);
+/// Where nothing else is told it lies under the object as it stands.
+std::optional<Ground> groundOf(const LightArguments& arguments, const Scene& scene);
+Image plateOf(Session& session, const std::string& name);
 void reportLights(Session& session, const LightCounts& counts);
 
 } // namespace ibl

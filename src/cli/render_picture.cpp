@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "image/read.h"
 
+#include <algorithm>
 #include <charconv>
 #include <filesystem>
 
@@ -36,25 +37,75 @@ std::optional<V3f> colorFrom(const std::string& text) {
     return at == end ? std::optional(color) : std::nullopt;
 }
 
+/// One of the three components of every pixel.
+std::vector<float> component(const Image& image, int c) {
+    std::vector<float> values(image.pixels.size() / 3);
+    for (std::size_t i = 0; i < values.size(); ++i)
+        values[i] = image.pixels[3 * i + static_cast<std::size_t>(c)];
+    return values;
+}
+
 } // namespace
 
-Background backgroundOf(Session& session, const PictureArguments& arguments) {
-    if (arguments.background == "probe") return ProbeBackground{};
-    if (arguments.background == "none") return NoBackground{};
-    if (const std::optional<V3f> color = colorFrom(arguments.background)) return *color;
-    std::error_code ignored;
-    if (arguments.background.find(',') != std::string::npos &&
-        !std::filesystem::exists(arguments.background, ignored)) {
-        throw Error(ExitCode::usage, "--background " + arguments.background +
-                                         ": a colour is three numbers, such as 0.2,0.2,0.2");
+std::vector<ExtraChannel> aovChannels(const PictureArguments& arguments, FrameAovs aovs) {
+    std::vector<ExtraChannel> channels;
+    const auto asked = [&](const char* name) {
+        return std::ranges::find(arguments.aovs, name) != arguments.aovs.end();
+    };
+    if (asked("normal")) {
+        channels.push_back({"normal.X", component(aovs.normal, 0)});
+        channels.push_back({"normal.Y", component(aovs.normal, 1)});
+        channels.push_back({"normal.Z", component(aovs.normal, 2)});
     }
-    session.addInput(arguments.background);
+    if (asked("depth")) channels.push_back({"depth.Z", std::move(aovs.depth)});
+    if (asked("id")) channels.push_back({"id", std::move(aovs.id)});
+    return channels;
+}
+
+void bindDevice(CLI::App& app, DeviceArguments& arguments) {
+    app.add_option_function<std::string>(
+           "--device",
+           [&arguments](const std::string& text) {
+               arguments.software = text == "software";
+               if (arguments.software) return;
+               int number = 0;
+               const char* end = text.data() + text.size();
+               const auto [last, problem] = std::from_chars(text.data(), end, number);
+               if (problem != std::errc() || last != end || number < 0) {
+                   throw CLI::ValidationError("--device", "'" + text +
+                                                              "' is neither software nor a "
+                                                              "device's number");
+               }
+               arguments.number = number;
+           },
+           "EGL device to draw with: software, or its number from 0; --verbose names them "
+           "(default: "
+           "hardware where there is some)")
+        ->type_name("N|software")
+        ->group("Run");
+}
+
+EglContext contextOf(const DeviceArguments& arguments) {
+    if (arguments.number) return EglContext::ofDevice(*arguments.number);
+    return EglContext(arguments.software ? DevicePreference::software
+                                         : DevicePreference::hardwareFirst);
+}
+
+Background backgroundOf(Session& session, const std::string& name) {
+    if (name == "probe") return ProbeBackground{};
+    if (name == "none") return NoBackground{};
+    if (const std::optional<V3f> color = colorFrom(name)) return *color;
+    std::error_code ignored;
+    if (name.find(',') != std::string::npos && !std::filesystem::exists(name, ignored)) {
+        throw Error(ExitCode::usage,
+                    "--background " + name + ": a colour is three numbers, such as 0.2,0.2,0.2");
+    }
+    session.addInput(name);
     ReadOptions how;
     how.threads = session.threads();
-    ImageFile file =
-        session.stage("background", [&] { return readImage(arguments.background, how); });
+    ImageFile file = session.stage("background", [&] { return readImage(name, how); });
     for (const std::string& text : file.notes)
-        session.note(arguments.background, text);
+        session.note(name, text);
     return std::move(file.image);
 }
 
@@ -73,6 +124,12 @@ void bindPicture(CLI::App& app, PictureArguments& arguments) {
         ->check(CLI::Range(1, 4096))
         ->type_name("N")
         ->capture_default_str()
+        ->group("Picture");
+    app.add_option("--aov", arguments.aovs,
+                   "Layers of the EXR beside the picture, each pixel's centre: normal, depth, id")
+        ->delimiter(',')
+        ->check(CLI::IsMember({"normal", "depth", "id"}))
+        ->type_name("NAME,...")
         ->group("Picture");
     app.add_option(
            "--background", arguments.background,

@@ -10,6 +10,9 @@
 #include <nlohmann/json.hpp>
 
 #include <cstdio>
+#include <cstring>
+
+#include <unistd.h>
 
 namespace ibl {
 namespace {
@@ -74,6 +77,22 @@ void Session::note(std::string_view subject, std::string_view text) {
 
 void Session::detail(std::string_view text) const {
     if (common_.verbose) std::fprintf(stderr, "%.*s\n", static_cast<int>(text.size()), text.data());
+}
+
+TellProgress Session::progress(const char* name) const {
+    if (common_.quiet || isatty(STDERR_FILENO) == 0) return {};
+    const auto begin = std::chrono::steady_clock::now();
+    return [name, begin](double done) {
+        const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+        if (taken.count() < 1) return;
+        // The line is wiped when all is done.
+        if (done < 1) {
+            std::fprintf(stderr, "\r%s %d %%", name, static_cast<int>(100 * done));
+        } else {
+            std::fprintf(stderr, "\r%*s\r", static_cast<int>(std::strlen(name)) + 6, "");
+        }
+        std::fflush(stderr);
+    };
 }
 
 void Session::addInput(const std::string& path) {
@@ -142,9 +161,14 @@ void Session::write(const std::string& path, const Panorama& panorama,
         addOutput(name);
 }
 
-void Session::write(const std::string& path, const Image& image, const WriteOptions& options) {
-    reportLosses(writeImage(outputs_, path, image, options), path, options);
+void Session::noteWritten(const std::string& path, const WriteLosses& losses,
+                          const WriteOptions& options) {
+    reportLosses(losses, path, options);
     addOutput(path);
+}
+
+void Session::write(const std::string& path, const Image& image, const WriteOptions& options) {
+    noteWritten(path, writeImage(outputs_, path, image, options), options);
 }
 
 void Session::write(const std::string& path, std::span<const Image* const> levels,

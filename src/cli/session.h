@@ -3,6 +3,7 @@
 
 #include "cli/arguments.h"
 
+#include "core/progress.h"
 #include "image/output_set.h"
 #include "panorama/panorama.h"
 #include "panorama/probe_file.h"
@@ -36,6 +37,10 @@ public:
     /// A line on standard error with --verbose.
     void detail(std::string_view text) const;
 
+    /// Shows on a terminal how far a stage is, once it lasts; empty without a terminal or with
+    /// --quiet.
+    TellProgress progress(const char* name) const;
+
     /// Runs `body` as a named stage whose seconds go into the report.
     template <class Body>
     auto stage(const char* name, Body body) {
@@ -64,6 +69,11 @@ public:
 
     OutputSet& outputs() { return outputs_; }
     void addOutput(const std::string& path) { output_names_.push_back(path); }
+    /// The same, and what the format could not hold of it.
+    void noteWritten(const std::string& path, const WriteLosses& losses,
+                     const WriteOptions& options);
+    /// Adds to a stage's seconds what was spent on it beside the others.
+    void addSeconds(const char* stage, double seconds) { stages_.emplace_back(stage, seconds); }
 
     /// The command's own part of the report.
     nlohmann::ordered_json& results();

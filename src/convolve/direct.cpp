@@ -1,5 +1,6 @@
 #include "convolve/direct.h"
 
+#include "convolve/peaks.h"
 #include "panorama/conventions.h"
 
 #include <algorithm>
@@ -8,11 +9,40 @@
 namespace ibl {
 namespace {
 
-int wrappedColumn(int i, int width) {
-    return ((i % width) + width) % width;
+/// 2 x 2 points are off by (size / scale)^4 / 4320 of a pixel's mass, 4 x 4 by
+/// (size / scale)^8 / 1.8e10, where `scale` is the angle over which the lobe changes by its own
+/// size: below 1e-9 either way.
+constexpr double kCoarse = 0.045, kFine = 0.5;
+
+PixelPointGrid makeGrid(int width, int height, int n) {
+    const GaussRule& rule = gaussRule(n);
+    PixelPointGrid grid;
+    grid.n = n;
+    for (int j = 0; j < height; ++j) {
+        double total = 0;
+        for (int b = 0; b < n; ++b) {
+            const double theta = kPi * (j + 0.5 + 0.5 * rule.nodes[b]) / height;
+            grid.sine.push_back(std::sin(theta));
+            grid.cosine.push_back(std::cos(theta));
+            total += rule.weights[b] * std::sin(theta);
+        }
+        const double area = latlongPixelSolidAngle(width, height, j);
+        for (int b = 0; b < n; ++b)
+            grid.weight.push_back(area * rule.weights[b] * grid.sine[n * j + b] / total);
+    }
+    for (int i = 0; i < width; ++i) {
+        for (int a = 0; a < n; ++a) {
+            const double psi = 2 * kPi * (i + 0.5 + 0.5 * rule.nodes[a]) / width;
+            grid.psi_sine.push_back(std::sin(psi));
+            grid.psi_cosine.push_back(std::cos(psi));
+        }
+    }
+    for (const double weight : rule.weights)
+        grid.psi_weight.push_back(0.5 * weight);
+    return grid;
 }
 
-/// Where the core's disc meets a parallel: half of its range of azimuths, pi when all of it.
+/// Where the lobe's disc meets a parallel: half of its range of azimuths, pi when all of it.
 double halfWidthAt(const Axis& axis, double theta, double radius) {
     const double s2 = std::sin(theta) * axis.sin_theta;
     const double gap = std::sin(0.5 * (theta - axis.theta)), reach = std::sin(0.5 * radius);
@@ -22,77 +52,95 @@ double halfWidthAt(const Axis& axis, double theta, double radius) {
     return 2 * std::asin(std::sqrt(room / s2));
 }
 
-struct Accumulator {
-    const Image& probe;
-    double* sum;
+/// Columns west to west + count - 1 of a row, not wrapped, outside of which it has no pixel within
+/// the disc.
+struct Columns {
+    int west = 0;
+    int count = 0;
+};
 
-    void add(const float* left, const float* right, double weight) const {
-        for (int c = 0; c < 3; ++c)
-            sum[c] += weight * (double{left[c]} - double{right[c]});
-    }
-    static bool same(const float* a, const float* b) {
-        return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+Columns columnsWithin(const DirectSum& direct, const Axis& axis, double top, double bottom) {
+    const int width = direct.probe.width;
+    double widest = 0;
+    for (const double theta : {top, bottom, std::clamp(axis.theta, top, bottom)})
+        widest = std::max(widest, halfWidthAt(axis, theta, direct.disc.radius));
+    if (widest <= 0) return {};
+    const double step = 2 * kPi / width;
+    // On a flat disc about a pole the widest parallel may lie between: a column to either side.
+    const int west = static_cast<int>(std::floor((axis.psi - widest) / step)) - 1;
+    const int east = static_cast<int>(std::floor((axis.psi + widest) / step)) + 1;
+    return {west, std::min(width, east - west + 1)};
+}
+
+struct Rotated {
+    double cosine, sine; ///< of the axis's azimuth
+    double cos_theta, sin_theta;
+
+    /// The cosine of the angle between the axis and point (a, b) of a grid.
+    double cosineTo(const PixelPointGrid& grid, std::size_t a, std::size_t b) const {
+        const double azimuth = grid.psi_cosine[a] * cosine + grid.psi_sine[a] * sine;
+        return cos_theta * grid.cosine[b] + sin_theta * grid.sine[b] * azimuth;
     }
 };
 
+double massByPoints(const DirectSum& direct, const PixelPointGrid& grid, const Rotated& axis, int i,
+                    int j) {
+    const auto n = static_cast<std::size_t>(grid.n);
+    double mass = 0;
+    for (std::size_t b = j * n; b < (j + 1) * n; ++b) {
+        double across = 0;
+        for (std::size_t a = 0; a < n; ++a) {
+            across +=
+                grid.psi_weight[a] * lobeValue(direct.lobe, axis.cosineTo(grid, i * n + a, b));
+        }
+        mass += grid.weight[b] * across;
+    }
+    return direct.norm * mass;
+}
+
 } // namespace
 
-double DirectLobe::operator()(double h) const {
-    return -mass_beyond(h);
+DirectSum makeDirectSum(const Lobe& lobe, const Image& probe, double scale) {
+    return {probe,
+            scale,
+            lobe,
+            LobeMassBeyond(lobe),
+            lobeWidth(lobe),
+            1 / lobeIntegral(lobe),
+            {lobeReach(lobe), lobeVariation(lobe)},
+            makeGrid(probe.width, probe.height, 2),
+            makeGrid(probe.width, probe.height, 4)};
 }
 
-DirectLobe makeDirectLobe(const Lobe& lobe) {
-    return {LobeMassBeyond(lobe), {lobeReach(lobe), lobeVariation(lobe)}};
-}
-
-void addDirect(const DirectLobe& lobe, const Image& probe, double scale, const Axis& axis,
-               double* sum) {
+void addDirect(const DirectSum& direct, const Axis& axis, double* sum) {
+    const Image& probe = direct.probe;
     const int w = probe.width, h = probe.height;
-    const double row_step = kPi / h, column_step = 2 * kPi / w, factor = scale / (2 * kPi);
-    const Accumulator out{probe, sum};
-    const int own_row = std::clamp(static_cast<int>(axis.theta / row_step), 0, h - 1);
-    const int own_column = static_cast<int>(std::floor(axis.psi / column_step));
-    const float* own = probe.at(wrappedColumn(own_column, w), own_row);
-    for (int c = 0; c < 3; ++c)
-        sum[c] += scale * own[c];
-
-    const int first = std::max(0, static_cast<int>((axis.theta - lobe.disc.radius) / row_step));
-    const int last = std::min(h - 1, static_cast<int>((axis.theta + lobe.disc.radius) / row_step));
+    const double row_step = kPi / h, column_step = 2 * kPi / w;
+    const Rotated rotated{std::cos(axis.psi), std::sin(axis.psi), axis.cos_theta, axis.sin_theta};
+    const auto beyond = [&](double height) { return -direct.mass_beyond(height); };
+    const double radius = direct.disc.radius;
+    const int first = std::max(0, static_cast<int>((axis.theta - radius) / row_step));
+    const int last = std::min(h - 1, static_cast<int>((axis.theta + radius) / row_step));
     for (int j = first; j <= last; ++j) {
         const double top = row_step * j, bottom = row_step * (j + 1);
-        // Parallel between rows j and j + 1.
-        if (j < last) {
-            const double reach = halfWidthAt(axis, bottom, lobe.disc.radius);
-            const int west = static_cast<int>(std::floor((axis.psi - reach) / column_step));
-            const int count = std::min(
-                w, static_cast<int>(std::floor((axis.psi + reach) / column_step)) - west + 1);
-            for (int i = west; reach > 0 && i < west + count; ++i) {
-                const int column = wrappedColumn(i, w);
-                const float *above = probe.at(column, j), *below = probe.at(column, j + 1);
-                if (Accumulator::same(above, below)) continue;
-                const double integral =
-                    parallelIntegral(lobe, lobe.disc, axis, bottom, i * column_step - axis.psi,
-                                     (i + 1) * column_step - axis.psi);
-                out.add(above, below, factor * integral);
+        const double size = std::max(row_step, column_step * std::sin(0.5 * (top + bottom)));
+        const Columns columns = columnsWithin(direct, axis, top, bottom);
+        for (int k = columns.west; k < columns.west + columns.count; ++k) {
+            const int i = ((k % w) + w) % w;
+            const double t = std::acos(std::clamp(
+                rotated.cosineTo(direct.coarse, 2 * std::size_t(i), 2 * std::size_t(j)), -1., 1.));
+            if (t > radius + 2 * size) continue;
+            const double scale = lobeScaleAt(direct.lobe, direct.width, t);
+            double mass = 0;
+            if (size > kFine * scale) {
+                mass = rectangleMass(beyond, 1, direct.disc, axis,
+                                     {top, bottom, i * column_step, (i + 1) * column_step});
+            } else {
+                mass = massByPoints(direct, size > kCoarse * scale ? direct.fine : direct.coarse,
+                                    rotated, i, j);
             }
-        }
-        // Meridians between the columns of row j.
-        const double widest = std::max({halfWidthAt(axis, top, lobe.disc.radius),
-                                        halfWidthAt(axis, bottom, lobe.disc.radius),
-                                        axis.theta > top && axis.theta < bottom
-                                            ? halfWidthAt(axis, axis.theta, lobe.disc.radius)
-                                            : 0.0});
-        if (widest <= 0) continue;
-        const int west = static_cast<int>(std::floor((axis.psi - widest) / column_step)) - 1;
-        const int count =
-            std::min(w, static_cast<int>(std::floor((axis.psi + widest) / column_step)) + 1 - west);
-        for (int i = west + 1; i <= west + count; ++i) {
-            const float *left = probe.at(wrappedColumn(i - 1, w), j),
-                        *right = probe.at(wrappedColumn(i, w), j);
-            if (Accumulator::same(left, right)) continue;
-            out.add(left, right,
-                    factor * meridianIntegral(lobe, lobe.disc, axis, i * column_step - axis.psi,
-                                              top, bottom));
+            for (int c = 0; c < 3; ++c)
+                sum[c] += direct.scale * probe.at(i, j)[c] * mass;
         }
     }
 }

@@ -1,31 +1,45 @@
 // The direct sum: a lobe's mean over the probe with no part of it in harmonics, in double
 // precision.
 //
-// The probe is constant over its pixels, so the integral of K L is a sum over the edges between
-// pixels of the radiance's step times the integral of K on one side, and Green's theorem turns that
-// into an integral along the edge (edges.h). It is exact for lobes much narrower than a pixel, and
-// slow: the reference quality and the tests use it.
+// A pixel's share is the lobe's mass over its rectangle: by Gauss points where the lobe is smooth
+// over the pixel, by its edges (edges.h) near the axis and the horizon, where it is not, so lobes
+// may be much narrower than a pixel. The reference quality and the tests use it.
 #pragma once
 
 #include "convolve/edges.h"
 #include "convolve/lobe.h"
 #include "image/image.h"
 
+#include <array>
+#include <vector>
+
 namespace ibl {
 
-/// A lobe as a function for edges.h: Q(h) = M(t) - M(pi), M its mass within t of the axis and
-/// h = sin^2(t/2).
-struct DirectLobe {
-    LobeMassBeyond mass_beyond;
-    Disc disc; ///< where Q is not zero
-
-    double operator()(double h) const;
+/// n x n Gauss points over each pixel of a lat-long, in (psi, theta), as a product: rows * n
+/// colatitudes and columns * n azimuths.
+struct PixelPointGrid {
+    int n = 0;
+    std::vector<double> sine, cosine; ///< of theta
+    std::vector<double> weight;       ///< of theta and psi; a pixel's sum to its solid angle
+    std::vector<double> psi_sine, psi_cosine;
+    std::vector<double> psi_weight; ///< of the rule alone, n of them, summing to 1
 };
 
-DirectLobe makeDirectLobe(const Lobe& lobe);
+/// A lobe and the probe that it is to be summed over; the probe must outlive it.
+struct DirectSum {
+    const Image& probe;
+    double scale; ///< of the probe's values
+    Lobe lobe;
+    LobeMassBeyond mass_beyond;
+    double width; ///< lobeWidth
+    double norm;  ///< 1 / integral of the lobe
+    Disc disc;    ///< where the lobe is not zero
+    PixelPointGrid coarse, fine;
+};
 
-/// Adds (K * L) in the direction of the axis, L the probe times `scale`: sum[c], c < 3.
-void addDirect(const DirectLobe& lobe, const Image& probe, double scale, const Axis& axis,
-               double* sum);
+DirectSum makeDirectSum(const Lobe& lobe, const Image& probe, double scale);
+
+/// Adds (K * L) in the direction of the axis, L the probe times its scale: sum[c], c < 3.
+void addDirect(const DirectSum& direct, const Axis& axis, double* sum);
 
 } // namespace ibl

@@ -163,6 +163,16 @@ double lobeWidth(const Lobe& lobe) {
     return 2 * std::asin(std::sqrt(std::exp2(low)));
 }
 
+double lobeScaleAt(const Lobe& lobe, double width, double t) {
+    const double to_horizon = std::abs(0.5 * kPi - t);
+    double smooth = width;
+    if (lobe.kernel == Kernel::ggx) smooth = std::max(width, 0.5 * t);
+    // (1 - cos t)^q cos t has its singularity on the axis and grows by q cot(t/2) dt.
+    if (lobe.kernel == Kernel::charlie)
+        smooth = std::min(0.5 * t, 2 * lobe.parameter * lobe.parameter * std::tan(0.5 * t));
+    return std::min(smooth, to_horizon);
+}
+
 double lobeReach(const Lobe& lobe) {
     // What lies beyond t is below 2 cos^n t of Phong's integral, below 2 cos^n(t/2) of Blinn's.
     const double n = lobe.parameter, half_pi = 0.5 * kPi;

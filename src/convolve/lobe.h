@@ -85,6 +85,10 @@ private:
 /// Angle (radians) within which half of the lobe's integral lies: its width.
 double lobeWidth(const Lobe& lobe);
 
+/// Angle (radians) over which the lobe, of that width, changes by its own size at t from its axis:
+/// as far as its horizon or its poles in the complex plane.
+double lobeScaleAt(const Lobe& lobe, double width, double t);
+
 /// Angle (radians) beyond which lies less than 1e-17 of the integral: at most pi / 2.
 double lobeReach(const Lobe& lobe);
 

@@ -1,55 +1,96 @@
 #include "convolve/peaks.h"
 
 #include "convolve/edges.h"
+#include "convolve/probe_scale.h"
 #include "core/parallel.h"
 #include "panorama/conventions.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace ibl {
 namespace {
 
-constexpr int kRowsPerTask = 16;
+/// Pixels whose greatest magnitude is kept.
+constexpr int kBlock = 16;
 
-double magnitude(const float* pixel, double scale) {
-    return scale * std::max({std::abs(double{pixel[0]}), std::abs(double{pixel[1]}),
-                             std::abs(double{pixel[2]})});
-}
+/// Sums over a row's values.
+struct RowSums {
+    double absolute[3] = {0, 0, 0};
+    double squares = 0;
+    bool negative = false;
+};
 
-/// Angle over which the lobe changes by its own size, t from its axis: as far as its horizon or its
-/// poles in the complex plane. Charlie, (1 - cos t)^q cos t, has its singularity on the axis and
-/// grows by q cot(t/2) dt.
-double scaleAt(const Lobe& lobe, double width, double t) {
-    const double to_horizon = std::abs(0.5 * kPi - t);
-    double smooth = width;
-    if (lobe.kernel == Kernel::ggx) smooth = std::max(width, 0.5 * t);
-    if (lobe.kernel == Kernel::charlie)
-        smooth = std::min(0.5 * t, 2 * lobe.parameter * lobe.parameter * std::tan(0.5 * t));
-    return std::min(smooth, to_horizon);
-}
-
-void addPixel(ProbeStatistics& part, const Candidate& pixel) {
-    const double w = pixel.solid_angle;
-    for (int c = 0; c < 3; ++c) {
-        const double value = pixel.value[c];
-        part.absolute[c] += w * std::abs(value);
-        part.energy += w * value * value;
-        part.squares += w * value * w * value;
-        part.negative = part.negative || value < 0;
-    }
-    const auto brighter = [](const Candidate& a, const Candidate& b) {
-        return a.magnitude > b.magnitude;
+/// Twelve values side by side, so that the compiler can use vectors. Doubles hold the squares of
+/// all floats, the least and the largest.
+RowSums sumRow(const float* values, int count) {
+    constexpr int kValues = 12;
+    std::array<double, kValues> absolute{}, squares{};
+    std::array<float, kValues> least{};
+    const auto take = [&](const float* part, int size) {
+        for (int k = 0; k < size; ++k) {
+            const double v = part[k];
+            absolute[k] += std::abs(v);
+            squares[k] += v * v;
+            least[k] = part[k] < least[k] ? part[k] : least[k];
+        }
     };
-    std::vector<Candidate>& best = part.brightest; // a heap with the dimmest on top
-    const bool full = best.size() > kMostPeaks;
-    if (full && pixel.magnitude <= best.front().magnitude) return;
-    if (full) {
-        std::ranges::pop_heap(best, brighter);
-        best.pop_back();
+    int i = 0;
+    for (; i + kValues <= count; i += kValues)
+        take(values + i, kValues);
+    take(values + i, count - i);
+    RowSums sums;
+    for (int k = 0; k < kValues; ++k) {
+        sums.absolute[k % 3] += absolute[k];
+        sums.squares += squares[k];
+        sums.negative = sums.negative || least[k] < 0;
     }
-    best.push_back(pixel);
-    std::ranges::push_heap(best, brighter);
+    return sums;
+}
+
+/// The greatest magnitude of a run of values, unscaled.
+float greatest(const float* values, std::size_t count) {
+    float most = 0;
+    for (std::size_t i = 0; i < count; ++i)
+        most = std::max(most, std::abs(values[i]));
+    return most;
+}
+
+/// The kMostPeaks + 1 brightest pixels, or all, from the greatest magnitude of every kBlock pixels
+/// of every row. No more blocks than that hold a pixel above the least of as many greatest blocks,
+/// so that few pixels are looked at; of those equal to it the first ones are taken.
+std::vector<Candidate> brightestPixels(const Image& probe, double scale,
+                                       const std::vector<float>& blocks) {
+    constexpr std::size_t kMost = kMostPeaks + 1;
+    float threshold = -1;
+    if (blocks.size() > kMost) {
+        std::vector<float> sorted = blocks;
+        std::ranges::nth_element(sorted, sorted.begin() + kMost - 1, std::greater<>());
+        threshold = sorted[kMost - 1];
+    }
+    const std::size_t blocks_a_row = blocks.size() / static_cast<std::size_t>(probe.height);
+    std::vector<Candidate> brightest;
+    std::size_t equal = 0;
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+        if (blocks[b] < threshold || (blocks[b] == threshold && equal >= kMost)) continue;
+        const int j = static_cast<int>(b / blocks_a_row);
+        const int first = static_cast<int>(b % blocks_a_row) * kBlock;
+        for (int i = first; i < std::min(first + kBlock, probe.width); ++i) {
+            const float* p = probe.at(i, j);
+            const float most = greatest(p, 3);
+            if (most < threshold || (most == threshold && equal >= kMost)) continue;
+            equal += most == threshold;
+            brightest.push_back({i,
+                                 j,
+                                 scale * most,
+                                 latlongPixelSolidAngle(probe.width, probe.height, j),
+                                 {scale * p[0], scale * p[1], scale * p[2]}});
+        }
+    }
+    std::ranges::stable_sort(brightest, std::greater<>(), &Candidate::magnitude);
+    if (brightest.size() > kMost) brightest.resize(kMost);
+    return brightest;
 }
 
 /// n x n points over a pixel, Gauss's in (psi, theta): in cos theta the pixels at the poles would
@@ -84,32 +125,33 @@ PeakRectangle rectangleOf(const Peak& peak, int width, int height) {
 
 } // namespace
 
-ProbeStatistics measureProbe(const Image& probe, double scale, int threads) {
-    const std::size_t tasks = (probe.height + kRowsPerTask - 1) / kRowsPerTask;
-    std::vector<ProbeStatistics> parts(tasks);
-    parallelFor(tasks, threads, [&](std::size_t task) {
-        const int first = static_cast<int>(task) * kRowsPerTask;
-        for (int j = first; j < std::min(first + kRowsPerTask, probe.height); ++j) {
-            const double w = latlongPixelSolidAngle(probe.width, probe.height, j);
-            for (int i = 0; i < probe.width; ++i) {
-                const float* p = probe.at(i, j);
-                addPixel(
-                    parts[task],
-                    {i, j, magnitude(p, scale), w, {scale * p[0], scale * p[1], scale * p[2]}});
-            }
+ProbeStatistics measureProbe(const Image& probe, int threads) {
+    const auto rows = static_cast<std::size_t>(probe.height);
+    const std::size_t blocks_a_row = (static_cast<std::size_t>(probe.width) + kBlock - 1) / kBlock;
+    std::vector<RowSums> sums(rows);
+    std::vector<float> blocks(rows * blocks_a_row);
+    parallelFor(rows, threads, [&](std::size_t j) {
+        const float* row = probe.row(static_cast<int>(j));
+        sums[j] = sumRow(row, 3 * probe.width);
+        for (std::size_t b = 0; b < blocks_a_row; ++b) {
+            const std::size_t first = 3 * kBlock * b;
+            const std::size_t count = std::min<std::size_t>(3 * kBlock, probe.rowFloats() - first);
+            blocks[j * blocks_a_row + b] = greatest(row + first, count);
         }
     });
     ProbeStatistics all;
-    for (const ProbeStatistics& part : parts) {
-        all.energy += part.energy;
-        all.squares += part.squares;
-        all.negative = all.negative || part.negative;
+    all.scale = scaleFor(*std::ranges::max_element(blocks));
+    const double square = all.scale * all.scale;
+    for (std::size_t j = 0; j < rows; ++j) {
+        if (!std::isfinite(sums[j].squares)) throw notFinite();
+        const double w = latlongPixelSolidAngle(probe.width, probe.height, static_cast<int>(j));
+        all.energy += w * square * sums[j].squares;
+        all.squares += w * w * square * sums[j].squares;
+        all.negative = all.negative || sums[j].negative;
         for (int c = 0; c < 3; ++c)
-            all.absolute[c] += part.absolute[c];
-        all.brightest.insert(all.brightest.end(), part.brightest.begin(), part.brightest.end());
+            all.absolute[c] += w * all.scale * sums[j].absolute[c];
     }
-    std::ranges::stable_sort(all.brightest, std::greater<>(), &Candidate::magnitude);
-    if (all.brightest.size() > kMostPeaks + 1) all.brightest.resize(kMostPeaks + 1);
+    all.brightest = brightestPixels(probe, all.scale, blocks);
     return all;
 }
 
@@ -166,7 +208,7 @@ double peakMass(const PeakSum& sum, std::size_t p, const Axis& axis, const V3d& 
     const PeakRectangle& r = sum.rectangles[p];
     const double t = std::acos(std::clamp(x.dot(r.coarse.directions[0]), -1.0, 1.0));
     if (t > 0.5 * kPi + 2 * r.size) return 0;
-    const double scale = scaleAt(sum.lobe, sum.width, t);
+    const double scale = lobeScaleAt(sum.lobe, sum.width, t);
     if (r.size > 0.5 * scale) {
         const auto q = [&](double h) { return -sum.mass_beyond(h); };
         return rectangleMass(q, 1, sum.disc, axis, r.edges);

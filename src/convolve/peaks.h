@@ -24,8 +24,9 @@ struct Candidate {
     double value[3];
 };
 
-/// Statistics of a probe, from which the split is chosen.
+/// Statistics of a probe, from which the split is chosen; values are scaled.
 struct ProbeStatistics {
+    double scale = 1;                 ///< scaleFor the largest magnitude
     std::vector<Candidate> brightest; ///< by magnitude, descending; at most kMostPeaks + 1
     double energy = 0;                ///< integral of L^2 over the sphere, all channels
     double squares = 0;               ///< sum of (w L)^2
@@ -35,7 +36,8 @@ struct ProbeStatistics {
 
 inline constexpr int kMostPeaks = 1024;
 
-ProbeStatistics measureProbe(const Image& probe, double scale, int threads);
+/// In one pass. Throws Error (input) on values that are not finite.
+ProbeStatistics measureProbe(const Image& probe, int threads);
 
 /// The threshold that splits off the `count` brightest pixels: the magnitude of the next one.
 double peakThreshold(const ProbeStatistics& statistics, int count);

@@ -6,7 +6,6 @@
 #include "convolve/evaluate.h"
 #include "convolve/narrow.h"
 #include "convolve/plan.h"
-#include "convolve/probe_scale.h"
 #include "convolve/synthesis.h"
 #include "convolve/texels.h"
 #include "core/error.h"
@@ -69,7 +68,7 @@ struct Ingredients {
     const SmoothField* field = nullptr;
     const MapValues* at_points = nullptr; ///< in place of `field`
     const PeakSum* peaks = nullptr;
-    const DirectLobe* direct = nullptr;
+    const DirectSum* direct = nullptr;
     const NarrowParts* narrow = nullptr;
 };
 
@@ -118,8 +117,7 @@ void fillRow(const Probe& probe, const PrefilterRequest& request, const Footprin
         addPeaks(*parts.peaks, points.u, points.v, values.data());
     }
     for (std::size_t i = 0; parts.direct && i < count; ++i) {
-        addDirect(*parts.direct, probe.image, probe.scale, makeAxis(points.u[i], points.v[i]),
-                  &values[3 * i]);
+        addDirect(*parts.direct, makeAxis(points.u[i], points.v[i]), &values[3 * i]);
     }
     std::vector<double> narrow(3 * points.column.size(), 0.0);
     if (parts.narrow) {
@@ -146,10 +144,12 @@ void fillRow(const Probe& probe, const PrefilterRequest& request, const Footprin
 }
 
 void fillMap(const Probe& probe, const PrefilterRequest& request, const Footprint& footprint,
-             const Ingredients& parts, int threads, Image& map, MapNorm& norm) {
+             const Ingredients& parts, int threads, Image& map, MapNorm& norm,
+             Progress* progress = nullptr) {
     std::vector<MapNorm> rows(map.height);
     parallelFor(map.height, threads, [&](std::size_t y) {
         fillRow(probe, request, footprint, parts, static_cast<int>(y), map, rows[y]);
+        if (progress) progress->step();
     });
     for (const MapNorm& row : rows)
         norm.add(row);
@@ -187,9 +187,10 @@ Engine analyseProbe(const Panorama& panorama, std::span<const PrefilterRequest> 
     const Stopwatch watch;
     const int threads = options.threads;
     const Image& image = panorama.image;
-    const double scale = probeScale(image, threads);
-    Engine engine{{panorama, image, scale, false},
-                  measureProbe(image, scale, threads),
+    ProbeStatistics statistics = measureProbe(image, threads);
+    const double scale = statistics.scale;
+    Engine engine{{panorama, image, scale, statistics.negative},
+                  std::move(statistics),
                   {},
                   {},
                   {},
@@ -199,7 +200,6 @@ Engine analyseProbe(const Panorama& panorama, std::span<const PrefilterRequest> 
                   {},
                   {},
                   0};
-    engine.probe.negative = engine.statistics.negative;
     if (options.reference) return engine;
     engine.plan = makePlan(engine.statistics, requests, options.max_error, image.width, threads);
     const Plan& plan = engine.plan;
@@ -242,15 +242,16 @@ PrefilterResult areaFiltered(const Engine& engine, const PrefilterRequest& reque
     return result;
 }
 
-PrefilterResult directSum(const Engine& engine, const PrefilterRequest& request, int threads) {
+PrefilterResult directSum(const Engine& engine, const PrefilterRequest& request, int threads,
+                          Progress& progress) {
     const Stopwatch watch;
     PrefilterResult result = emptyResult(request);
-    const DirectLobe direct = makeDirectLobe(request.lobe);
+    const DirectSum direct = makeDirectSum(request.lobe, engine.probe.image, engine.probe.scale);
     const Footprint footprint = footprintOf(request.lobe, texelAngle(request), kAnyDegree);
     Ingredients parts;
     parts.direct = &direct;
     MapNorm norm;
-    fillMap(engine.probe, request, footprint, parts, threads, result.map.image, norm);
+    fillMap(engine.probe, request, footprint, parts, threads, result.map.image, norm, &progress);
     result.seconds_spatial = watch.seconds();
     result.error_bound = result.error_estimate = kFloatRounding;
     result.worst_bound = kFloatRounding;
@@ -349,6 +350,10 @@ std::vector<PrefilterResult> prefilter(const Panorama& latlong,
                                        const PrefilterOptions& options) {
     checkRequests(latlong.image, requests, options);
     const Engine engine = analyseProbe(latlong, requests, options);
+    std::size_t rows = 0;
+    for (const PrefilterRequest& request : requests)
+        rows += layoutExtent(request.layout, request.size).y;
+    Progress progress(options.progress, rows);
     std::vector<PrefilterResult> results;
     for (std::size_t i = 0; i < requests.size(); ++i) {
         const PrefilterRequest& request = requests[i];
@@ -356,7 +361,7 @@ std::vector<PrefilterResult> prefilter(const Panorama& latlong,
         if (isMirror(request.lobe)) {
             result = areaFiltered(engine, request, options.threads);
         } else if (options.reference) {
-            result = directSum(engine, request, options.threads);
+            result = directSum(engine, request, options.threads, progress);
         } else if (engine.plan.lobes[i].method == Method::harmonics) {
             result = byHarmonics(engine, request, engine.plan.lobes[i], options.max_error,
                                  options.threads);

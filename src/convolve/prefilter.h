@@ -7,6 +7,7 @@
 #pragma once
 
 #include "convolve/lobe.h"
+#include "core/progress.h"
 #include "panorama/panorama.h"
 
 #include <array>
@@ -44,6 +45,7 @@ struct PrefilterOptions {
     double max_error = 1e-4; ///< relative RMSE asked for (> 0); chooses band limits and peaks
     bool reference = false;  ///< direct double-precision sum instead of harmonics
     int threads = 0;         ///< 0: as many as the machine has; the result does not depend on it
+    TellProgress progress{}; ///< of the direct sum, which lasts
 };
 
 /// The options that a row of kQualities stands for.

@@ -1,6 +1,5 @@
 #include "convolve/probe_scale.h"
 
-#include "core/error.h"
 #include "core/parallel.h"
 
 #include <algorithm>
@@ -9,6 +8,14 @@
 #include <vector>
 
 namespace ibl {
+
+Error notFinite() {
+    return {ExitCode::input, "probe: has pixels that are not finite; repair them first"};
+}
+
+double scaleFor(float most) {
+    return most > 0 ? std::ldexp(1.0, -std::ilogb(most)) : 1;
+}
 
 double probeScale(const Image& probe, int threads) {
     std::vector<float> rows(probe.height, 0.0f);
@@ -23,13 +30,10 @@ double probeScale(const Image& probe, int threads) {
     });
     float most = 0;
     for (const float row : rows) {
-        if (!std::isfinite(row)) {
-            throw Error(ExitCode::input,
-                        "probe: has pixels that are not finite; repair them first");
-        }
+        if (!std::isfinite(row)) throw notFinite();
         most = std::max(most, row);
     }
-    return most > 0 ? std::ldexp(1.0, -std::ilogb(most)) : 1;
+    return scaleFor(most);
 }
 
 } // namespace ibl

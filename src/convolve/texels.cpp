@@ -37,17 +37,23 @@ GaussRule footprintRule(int n) {
     return rule;
 }
 
-/// Appends the points of texel (x, y).
-void addTexel(Layout layout, int width, int height, int x, int y, const Footprint& footprint,
-              RowPoints& points) {
-    // The texel is a rectangle in the image, so a product of Gauss rules has the highest order.
-    const GaussRule rule = footprintRule(footprint.samples);
+/// Appends the points of texel (x, y), which looks along `centre`, by the rule: the texel is a
+/// rectangle in the image, so a product of Gauss rules has the highest order.
+void addTexel(Layout layout, int width, int height, int x, int y, const V3d& centre,
+              double footprint_scale, const GaussRule& rule, RowPoints& points) {
+    if (rule.nodes.size() == 1) {
+        const V2d p = latlongPoint(centre);
+        points.u.push_back(p.x);
+        points.v.push_back(p.y);
+        points.share.push_back(1);
+        return;
+    }
     const std::size_t first = points.u.size();
     double total = 0;
     for (std::size_t b = 0; b < rule.nodes.size(); ++b) {
         for (std::size_t a = 0; a < rule.nodes.size(); ++a) {
-            const double dx = 0.5 * footprint.scale * rule.nodes[a];
-            const double dy = 0.5 * footprint.scale * rule.nodes[b];
+            const double dx = 0.5 * footprint_scale * rule.nodes[a];
+            const double dy = 0.5 * footprint_scale * rule.nodes[b];
             const V3d d = directionIn(layout, width, height, {x + 0.5, y + 0.5}, {dx, dy});
             const V2d p = latlongPoint(d);
             points.u.push_back(p.x);
@@ -104,13 +110,14 @@ std::array<V3d, 4> texelCorners(Layout layout, int width, int height, int x, int
 
 RowPoints rowPoints(Layout layout, int width, int height, int y, const Footprint& footprint) {
     RowPoints points;
-    const std::size_t points_across = footprintRule(footprint.samples).nodes.size();
-    points.per_texel = static_cast<int>(points_across * points_across);
+    const GaussRule rule = footprintRule(footprint.samples);
+    points.per_texel = static_cast<int>(rule.nodes.size() * rule.nodes.size());
     for (int x = 0; x < width; ++x) {
-        if (!texelDirection(layout, width, height, x + 0.5, y + 0.5)) continue;
+        const auto centre = texelDirection(layout, width, height, x + 0.5, y + 0.5);
+        if (!centre) continue;
         points.column.push_back(x);
         points.solid_angle.push_back(texelSolidAngle(layout, width, height, x, y));
-        addTexel(layout, width, height, x, y, footprint, points);
+        addTexel(layout, width, height, x, y, *centre, footprint.scale, rule, points);
     }
     return points;
 }

@@ -64,6 +64,8 @@ Imf::Header makeHeader(const Image& image, const WriteOptions& options, const st
     const Imf::PixelType type = options.type == PixelType::half ? Imf::HALF : Imf::FLOAT;
     for (int c = 0; c < image.channels; ++c)
         header.channels().insert(kChannels[c], Imf::Channel(type));
+    for (const ExtraChannel& extra : options.extra)
+        header.channels().insert(extra.name, Imf::Channel(Imf::FLOAT));
     if (options.envmap == "latlong") {
         Imf::addEnvmap(header, Imf::ENVMAP_LATLONG);
     } else if (options.envmap == "cube") {
@@ -78,7 +80,7 @@ Imf::Header makeHeader(const Image& image, const WriteOptions& options, const st
 /// Hands `rows` rows that begin at `first_pixel` to the file as its rows from `y` on.
 template <class T>
 void writeRows(Imf::OutputFile& file, Imf::PixelType type, const T* first_pixel, int y, int rows,
-               const Image& image) {
+               const Image& image, const WriteOptions& options) {
     const std::size_t x_stride = static_cast<std::size_t>(image.channels) * sizeof(T);
     const std::size_t y_stride = static_cast<std::size_t>(image.width) * x_stride;
     const auto base =
@@ -87,6 +89,12 @@ void writeRows(Imf::OutputFile& file, Imf::PixelType type, const T* first_pixel,
     for (std::size_t c = 0; c < static_cast<std::size_t>(image.channels); ++c) {
         buffer.insert(kChannels[c], Imf::Slice(type, reinterpret_cast<char*>(base + c * sizeof(T)),
                                                x_stride, y_stride));
+    }
+    for (const ExtraChannel& extra : options.extra) {
+        auto* values = const_cast<float*>(extra.values.data()); // Imf reads through char*
+        buffer.insert(extra.name,
+                      Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(values), sizeof(float),
+                                 static_cast<std::size_t>(image.width) * sizeof(float)));
     }
     file.setFrameBuffer(buffer);
     file.writePixels(rows);
@@ -109,7 +117,7 @@ WriteLosses toHalf(const float* from, std::size_t count, half* to) {
     return losses;
 }
 
-WriteLosses writeHalf(Imf::OutputFile& file, const Image& image, int threads) {
+WriteLosses writeHalf(Imf::OutputFile& file, const Image& image, const WriteOptions& options) {
     constexpr int kRows = 256; // a multiple of every compression's chunk height
     const std::size_t row = image.rowFloats();
     std::vector<half> scratch(row * static_cast<std::size_t>(std::min(kRows, image.height)));
@@ -117,15 +125,16 @@ WriteLosses writeHalf(Imf::OutputFile& file, const Image& image, int threads) {
     for (int y = 0; y < image.height; y += kRows) {
         const int rows = std::min(kRows, image.height - y);
         std::vector<WriteLosses> losses(static_cast<std::size_t>(rows));
-        parallelForRuns(losses.size(), 32, threads, [&](std::size_t first, std::size_t last) {
-            for (std::size_t r = first; r < last; ++r) {
-                losses[r] =
-                    toHalf(image.row(y + static_cast<int>(r)), row, scratch.data() + r * row);
-            }
-        });
+        parallelForRuns(
+            losses.size(), 32, options.threads, [&](std::size_t first, std::size_t last) {
+                for (std::size_t r = first; r < last; ++r) {
+                    losses[r] =
+                        toHalf(image.row(y + static_cast<int>(r)), row, scratch.data() + r * row);
+                }
+            });
         for (const WriteLosses& l : losses)
             total += l;
-        writeRows(file, Imf::HALF, scratch.data(), y, rows, image);
+        writeRows(file, Imf::HALF, scratch.data(), y, rows, image, options);
     }
     return total;
 }
@@ -136,12 +145,14 @@ WriteLosses writeExr(OutputFile& file, const Image& image, const WriteOptions& o
     WriteLosses losses;
     try {
         OutputStream stream(file);
-        Imf::OutputFile out(stream, makeHeader(image, options, file.path()),
-                            exrThreads(options.threads));
+        const Imf::Header header = makeHeader(image, options, file.path());
+        // Handing rows to other threads costs more than copying them.
+        const bool plain = header.compression() == Imf::NO_COMPRESSION;
+        Imf::OutputFile out(stream, header, plain ? 0 : exrThreads(options.threads));
         if (options.type == PixelType::half) {
-            losses = writeHalf(out, image, options.threads);
+            losses = writeHalf(out, image, options);
         } else {
-            writeRows(out, Imf::FLOAT, image.pixels.data(), 0, image.height, image);
+            writeRows(out, Imf::FLOAT, image.pixels.data(), 0, image.height, image, options);
         }
     } catch (const Error&) {
         throw;

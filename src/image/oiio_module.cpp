@@ -118,11 +118,11 @@ ImageFile read(const std::string& path, const ReadOptions& options) {
     checkSize("image", spec.width, spec.height);
     const Channels channels = channelsOf(spec);
     const bool alpha = options.keep_alpha && channels.alpha >= 0;
-    const bool encoded = isEncoded(spec);
+    const bool encoded = isEncoded(spec) && !options.undecoded;
 
     ImageFile file;
     file.image = readPixels(*in, spec, channels, alpha);
-    toLinear(file.image, spec);
+    if (!options.undecoded) toLinear(file.image, spec);
     file.format = in->format_name();
     file.compression = spec.get_string_attribute("compression");
     file.pixel_type = spec.format.c_str();

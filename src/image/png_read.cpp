@@ -85,28 +85,29 @@ bool readRows(Reader& reader, png_bytepp rows) {
     return true;
 }
 
-/// Linear light of every code of 8 or 16 bits.
-std::vector<float> decodingTable(const Shape& shape) {
+/// Linear light of every code of 8 or 16 bits, or the code itself, as a part of the largest.
+std::vector<float> decodingTable(const Shape& shape, bool undecoded) {
     std::vector<float> table(std::size_t{1} << shape.depth);
     const double last = static_cast<double>(table.size() - 1);
     for (std::size_t code = 0; code < table.size(); ++code) {
         const double v = static_cast<double>(code) / last;
-        table[code] = shape.gamma > 0 ? static_cast<float>(std::pow(v, 1 / shape.gamma))
-                                      : srgbToLinear(static_cast<float>(v));
+        table[code] = undecoded         ? static_cast<float>(v)
+                      : shape.gamma > 0 ? static_cast<float>(std::pow(v, 1 / shape.gamma))
+                                        : srgbToLinear(static_cast<float>(v));
     }
     return table;
 }
 
 template <class Code>
 void decodeRow(const std::uint8_t* row, int stored_channels, const std::vector<float>& table,
-               Image& image, int y) {
+               bool premultiply, Image& image, int y) {
     const auto* codes = reinterpret_cast<const Code*>(row);
     const float alpha_scale = 1.0F / static_cast<float>(table.size() - 1);
     float* out = image.row(y);
     for (int x = 0; x < image.width; ++x, codes += stored_channels, out += image.channels) {
         const float alpha = image.channels == 4 ? static_cast<float>(codes[3]) * alpha_scale : 1.0F;
         for (int c = 0; c < 3; ++c)
-            out[c] = table[codes[c]] * alpha;
+            out[c] = table[codes[c]] * (premultiply ? alpha : 1);
         if (image.channels == 4) out[3] = alpha;
     }
 }
@@ -141,23 +142,27 @@ ImageFile readPng(std::span<const std::uint8_t> bytes, const std::string& name,
     const bool has_alpha = shape.channels == 4;
     file.image = Image(static_cast<int>(shape.width), static_cast<int>(shape.height),
                        has_alpha && options.keep_alpha ? 4 : 3);
-    const std::vector<float> table = decodingTable(shape);
+    const std::vector<float> table = decodingTable(shape, options.undecoded);
     parallelForRuns(rows.size(), 32, options.threads, [&](std::size_t first, std::size_t last) {
         for (std::size_t y = first; y < last; ++y) {
             if (shape.depth == 16) {
-                decodeRow<std::uint16_t>(rows[y], shape.channels, table, file.image, int(y));
+                decodeRow<std::uint16_t>(rows[y], shape.channels, table, !options.undecoded,
+                                         file.image, int(y));
             } else {
-                decodeRow<std::uint8_t>(rows[y], shape.channels, table, file.image, int(y));
+                decodeRow<std::uint8_t>(rows[y], shape.channels, table, !options.undecoded,
+                                        file.image, int(y));
             }
         }
     });
     file.format = "png";
     file.compression = "deflate";
     file.pixel_type = shape.depth == 16 ? "uint16" : "uint8";
-    file.notes.push_back(shape.gamma > 0 ? "is display-referred, of low dynamic range; decoded by "
-                                           "its gAMA chunk"
-                                         : "is display-referred, of low dynamic range; decoded "
-                                           "from sRGB");
+    if (!options.undecoded)
+        file.notes.push_back(shape.gamma > 0
+                                 ? "is display-referred, of low dynamic range; decoded by "
+                                   "its gAMA chunk"
+                                 : "is display-referred, of low dynamic range; decoded "
+                                   "from sRGB");
     if (has_alpha && !options.keep_alpha) file.notes.push_back("its alpha channel is ignored");
     return file;
 }

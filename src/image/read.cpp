@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <new>
 #include <string_view>
+#include <utility>
 
 namespace ibl {
 namespace {
@@ -42,15 +43,24 @@ ImageFile readSource(Source& source, const ReadOptions& options) {
     return readOiio(source, options);
 }
 
-} // namespace
-
-ImageFile readImage(const std::string& path, const ReadOptions& options) {
-    Source source = openSource(path);
+ImageFile readOpened(Source source, const ReadOptions& options) {
     try {
         return readSource(source, options);
     } catch (const std::bad_alloc&) {
         throw inputError(source.name, "does not fit into memory; shrink it first");
     }
+}
+
+} // namespace
+
+ImageFile readImage(const std::string& path, const ReadOptions& options) {
+    return readOpened(openSource(path), options);
+}
+
+ImageFile readImage(std::vector<std::uint8_t> bytes, const std::string& name,
+                    const ReadOptions& options) {
+    if (bytes.empty()) throw inputError(name, "is empty; export it again");
+    return readOpened({name, "", std::move(bytes), true}, options);
 }
 
 } // namespace ibl

@@ -5,6 +5,7 @@
 
 #include <Imath/ImathVec.h>
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,9 @@ struct ReadOptions {
     bool keep_alpha =
         false;       ///< RGBA where the file has alpha; otherwise alpha is dropped, and noted
     int threads = 0; ///< for decoding; 0: as many as the machine has
+    /// Integer formats as they are, codes from 0 to 1, for what is no colour (a normal map); their
+    /// alpha is not multiplied in.
+    bool undecoded = false;
 };
 
 struct ImageFile {
@@ -41,5 +45,8 @@ struct ImageFile {
 /// pixels an edge or 2^30 pixels in all; and Error(ExitCode::missing) if OpenImageIO is needed and
 /// not there.
 ImageFile readImage(const std::string& path, const ReadOptions& options = {});
+/// The same of a file's bytes; `name` is for messages.
+ImageFile readImage(std::vector<std::uint8_t> bytes, const std::string& name,
+                    const ReadOptions& options = {});
 
 } // namespace ibl

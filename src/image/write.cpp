@@ -85,6 +85,10 @@ WriteLosses writeImage(OutputSet& outputs, const std::string& path, const Image&
         throw Error(ExitCode::usage, path + ": only OpenEXR files have a compression or envmap to "
                                             "choose; leave it out, or write .exr");
     }
+    if (format != "exr" && !options.extra.empty()) {
+        throw Error(ExitCode::usage, path + ": only OpenEXR files have further channels; write "
+                                            ".exr");
+    }
     OutputFile& file = outputs.add(path);
     if (format == "exr") return writeExr(file, image, options);
     if (isRadiance(format)) return writeRadiance(file, image, options.threads);

@@ -14,6 +14,12 @@ namespace ibl {
 /// Type of the channels of OpenEXR files; other formats have their own (TIFF follows it).
 enum class PixelType { half, float32 };
 
+/// A further channel of a picture, of the picture's size.
+struct ExtraChannel {
+    std::string name; ///< with its layer: "normal.X"
+    std::vector<float> values;
+};
+
 struct WriteOptions {
     PixelType type = PixelType::float32;
     /// OpenEXR: "none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"; "" is
@@ -23,6 +29,8 @@ struct WriteOptions {
     std::string envmap;  ///< OpenEXR's envmap attribute: "", "latlong" or "cube"
     std::string format;  ///< "exr", "hdr", "png", ... instead of what the name's extension says
     int threads = 0;     ///< for encoding; 0: as many as the machine has
+    /// OpenEXR: written beside the picture's own, as floats whatever `type` is.
+    std::span<const ExtraChannel> extra;
 };
 
 /// What a format could not hold. Counts are of values (channels), not of pixels.

@@ -4,6 +4,7 @@
 #include "core/parallel.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -34,6 +35,14 @@ void note(BadPixels& bad, bool is_new, int x, int y, float value, Worse worse) {
     }
 }
 
+void seekBrightest(RowCensus& row, const float* pixel, int x) {
+    const double luminance = V3d(pixel[0], pixel[1], pixel[2]).dot(kLuminance);
+    if (luminance > row.brightest) {
+        row.brightest = luminance;
+        row.brightest_x = x;
+    }
+}
+
 void countPixel(RowCensus& row, const float* pixel, int x, int y, double solid_angle) {
     bool nan = false, infinite = false, negative = false;
     for (int c = 0; c < 3; ++c) {
@@ -54,12 +63,45 @@ void countPixel(RowCensus& row, const float* pixel, int x, int y, double solid_a
             row.energy[c] += value * solid_angle;
         }
     }
-    if (nan || infinite) return;
-    const double luminance = V3d(pixel[0], pixel[1], pixel[2]).dot(kLuminance);
-    if (luminance > row.brightest) {
-        row.brightest = luminance;
-        row.brightest_x = x;
+    if (!nan && !infinite) seekBrightest(row, pixel, x);
+}
+
+/// The census of `width` pixels of one solid angle, if none is bad: four pixels side by side, so
+/// that the compiler can use vectors. Returns false, having done nothing, where some value is
+/// negative or not finite.
+bool countCleanRow(RowCensus& row, const float* pixels, int width, double solid_angle) {
+    constexpr int kValues = 12;
+    std::array<float, kValues> least, most;
+    std::array<double, kValues> sum{};
+    least.fill(std::numeric_limits<float>::infinity());
+    most.fill(-std::numeric_limits<float>::infinity());
+    const auto take = [&](const float* values, int count) {
+        for (int k = 0; k < count; ++k) {
+            least[k] = values[k] < least[k] ? values[k] : least[k];
+            most[k] = values[k] > most[k] ? values[k] : most[k];
+            sum[k] += values[k];
+        }
+    };
+    int i = 0;
+    for (; i + kValues <= 3 * width; i += kValues)
+        take(pixels + i, kValues);
+    take(pixels + i, 3 * width - i);
+    for (int k = 0; k < kValues; ++k) {
+        // A sum of floats stays finite as a double.
+        if (!(least[k] >= 0) || !std::isfinite(sum[k])) return false;
     }
+    for (int k = 0; k < kValues; ++k) {
+        row.min[k % 3] = std::min(row.min[k % 3], static_cast<double>(least[k]));
+        row.max[k % 3] = std::max(row.max[k % 3], static_cast<double>(most[k]));
+        row.energy[k % 3] += sum[k] * solid_angle;
+    }
+    for (int x = 0; x < width; ++x) {
+        const float* p = pixels + 3 * x;
+        // Luminance is a mean of the channels. It is seldom worked out.
+        if (std::max({p[0], p[1], p[2]}) < 0.999999 * row.brightest) continue;
+        seekBrightest(row, p, x);
+    }
+    return true;
 }
 
 void merge(BadPixels& total, const BadPixels& row, bool lower) {
@@ -205,12 +247,14 @@ Census takeCensus(const Panorama& panorama, int threads) {
     std::vector<RowCensus> rows(static_cast<std::size_t>(image.height));
     parallelFor(rows.size(), threads, [&](std::size_t r) {
         const int y = static_cast<int>(r);
-        double solid_angle = 0;
+        const auto solidAngle = [&](int x) {
+            return texelSolidAngle(panorama.layout, image.width, image.height, x, y);
+        };
+        const bool of_one_size = panorama.layout == Layout::latlong;
+        double solid_angle = solidAngle(0);
+        if (of_one_size && countCleanRow(rows[r], image.row(y), image.width, solid_angle)) return;
         for (int x = 0; x < image.width; ++x) {
-            // A lat-long's row is of one size.
-            if (x == 0 || panorama.layout != Layout::latlong) {
-                solid_angle = texelSolidAngle(panorama.layout, image.width, image.height, x, y);
-            }
+            if (!of_one_size) solid_angle = solidAngle(x);
             if (solid_angle > 0) countPixel(rows[r], image.at(x, y), x, y, solid_angle);
         }
     });

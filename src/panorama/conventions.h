@@ -99,12 +99,21 @@ inline V3d cubeTexelDirection(int face, int i, int j, int edge) {
 }
 
 /// Solid angle of a rectangle on a cube face, exact, steradians: the alternating sum over its
-/// corners of the integral of (1 + s^2 + t^2)^(-3/2), which is atan(s t / sqrt(1 + s^2 + t^2)).
+/// corners of the integral of (1 + s^2 + t^2)^(-3/2), which is atan(s t / sqrt(1 + s^2 + t^2)). The
+/// angles are added as the arguments of a product of complex numbers, which takes one arc tangent.
 inline double cubeRectangleSolidAngle(double s0, double s1, double t0, double t1) {
-    const auto corner = [](double s, double t) {
-        return std::atan2(s * t, std::sqrt(s * s + t * t + 1));
+    struct Complex {
+        double re, im;
+        Complex operator*(const Complex& z) const {
+            return {re * z.re - im * z.im, re * z.im + im * z.re};
+        }
     };
-    return corner(s0, t0) - corner(s0, t1) - corner(s1, t0) + corner(s1, t1);
+    const auto corner = [](double s, double t, double sign) {
+        return Complex{std::sqrt(s * s + t * t + 1), sign * s * t};
+    };
+    const Complex sum =
+        corner(s0, t0, 1) * corner(s0, t1, -1) * (corner(s1, t0, -1) * corner(s1, t1, 1));
+    return std::atan2(sum.im, sum.re);
 }
 
 /// Solid angle of texel (i, j) of an N x N cube face, exact, steradians.

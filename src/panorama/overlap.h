@@ -100,8 +100,10 @@ void forEachOverlap(const CubeLatlongOverlaps& overlaps, int face, int i, int j,
         const OctantOverlap* part = table.overlaps[a].data();
         const OctantOverlap* end = part + table.begin[a][b + 1];
         for (part += table.begin[a][b]; part != end; ++part) {
-            int x = (wedge.first_column + wedge.step * part->column) % overlaps.columns;
+            // Within one turn of the first; a remainder would cost more than all else here.
+            int x = wedge.first_column + wedge.step * part->column;
             if (x < 0) x += overlaps.columns;
+            if (x >= overlaps.columns) x -= overlaps.columns;
             use(x, row_of(part->row), part->area);
         }
     };

@@ -78,6 +78,9 @@ void latlongToCube(const Panorama& source, Panorama& result, Enlarging enlarging
             cubeGrid(edge, to_border),
             latlongGrid(source.image.width, source.image.height, from_border), threads);
     }
+    // The corners' texels are the smallest.
+    const double least = texelPitch(pitch_on_face, V3d(1)) / row_pitch;
+    const bool area_alone = areaShare(least, enlarging) == 1;
     const LatlongPixels pixels(source);
     const Sampler sampler = makeSampler(source);
 
@@ -86,8 +89,8 @@ void latlongToCube(const Panorama& source, Panorama& result, Enlarging enlarging
         const double t = 2 * centreAt(j, edge, to_border) - 1;
         for (int i = 0; i < edge; ++i) {
             const V3d direction = cubeDirection({face, 2 * centreAt(i, edge, to_border) - 1, t});
-            const double pitch = texelPitch(pitch_on_face, direction);
-            const double share = areaShare(pitch / row_pitch, enlarging);
+            const double pitch = area_alone ? 0 : texelPitch(pitch_on_face, direction);
+            const double share = area_alone ? 1 : areaShare(pitch / row_pitch, enlarging);
             V3d value(0);
             if (share > 0) {
                 Sum sum;

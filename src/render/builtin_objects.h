@@ -12,6 +12,27 @@ Mesh makeCube();
 /// so that an edge, not a face, looks along each axis.
 Mesh makeDodecahedron();
 
+/// Corners on the unit sphere, flat faces: one corner of the tetrahedron up, the others at azimuths
+/// 60, 180 and 300 degrees, so that a face looks at the viewer at azimuth 0.
+Mesh makeTetrahedron();
+
+/// Corners on the unit sphere, one on each half axis, flat faces.
+Mesh makeOctahedron();
+
+/// Corners on the unit sphere, (0, +-1, +-phi) and its cyclic turns before scaling, flat faces.
+Mesh makeIcosahedron();
+
+/// A square in the plane y = 0, looking up, corners on the unit sphere; its texture's upper edge
+/// lies towards -Z, its right one towards +X.
+Mesh makePlane();
+
+/// Upright, closed by flat discs, as high as wide: radius and half height 1 / sqrt 2.
+Mesh makeCylinder();
+
+/// Upright, tip at (0, 1, 0), closed by a flat disc at y = -1/2 of radius sqrt(3)/2: seen from the
+/// side it is an equilateral triangle.
+Mesh makeCone();
+
 /// A ring about the Z axis, facing the viewer at azimuth 0: tube radius 0.3 about a circle of 0.7.
 Mesh makeTorus();
 

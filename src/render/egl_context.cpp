@@ -15,6 +15,7 @@
 namespace ibl {
 namespace {
 
+constexpr EGLint kRendererName = 0x335F; // EGL_RENDERER_EXT, which libepoxy does not know
 constexpr const char* kPackages =
     "install the packages libegl1 libgl1-mesa-dri libopengl0 (or a graphics driver with EGL)";
 
@@ -34,21 +35,52 @@ void requireLibraries() {
     }
 }
 
-// Software devices last; not at all hardware when only software is wanted.
-std::vector<EGLDeviceEXT> orderedDevices(DevicePreference preference) {
+bool clientHas(const char* name) {
+    const char* client = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
+    return client && epoxy_extension_in_string(client, name);
+}
+
+bool has(EGLDeviceEXT device, const char* name) {
+    const char* extensions = eglQueryDeviceStringEXT(device, EGL_EXTENSIONS);
+    return extensions && epoxy_extension_in_string(extensions, name);
+}
+
+bool isSoftware(EGLDeviceEXT device) {
+    return has(device, "EGL_MESA_device_software");
+}
+
+std::vector<EGLDeviceEXT> allDevices() {
+    const bool listed =
+        clientHas("EGL_EXT_platform_base") && clientHas("EGL_EXT_platform_device") &&
+        (clientHas("EGL_EXT_device_base") || clientHas("EGL_EXT_device_enumeration"));
     std::array<EGLDeviceEXT, 64> all;
     EGLint count = 0;
-    if (!eglQueryDevicesEXT(static_cast<EGLint>(all.size()), all.data(), &count)) return {};
+    if (!listed || !eglQueryDevicesEXT(static_cast<EGLint>(all.size()), all.data(), &count))
+        return {};
+    return std::vector<EGLDeviceEXT>(all.begin(), all.begin() + count);
+}
+
+// Software devices last; not at all hardware when only software is wanted.
+std::vector<EGLDeviceEXT> orderedDevices(DevicePreference preference) {
     std::vector<EGLDeviceEXT> hardware, software;
-    for (EGLint i = 0; i < count; ++i) {
-        const char* extensions = eglQueryDeviceStringEXT(all[i], EGL_EXTENSIONS);
-        const bool is_software =
-            extensions && epoxy_extension_in_string(extensions, "EGL_MESA_device_software");
-        (is_software ? software : hardware).push_back(all[i]);
-    }
+    for (const EGLDeviceEXT device : allDevices())
+        (isSoftware(device) ? software : hardware).push_back(device);
     if (preference == DevicePreference::software) return software;
     hardware.insert(hardware.end(), software.begin(), software.end());
     return hardware;
+}
+
+std::string nameOf(EGLDeviceEXT device) {
+    if (isSoftware(device)) return "software";
+    if (has(device, "EGL_EXT_device_query_name")) {
+        if (const char* name = eglQueryDeviceStringEXT(device, kRendererName)) return name;
+    }
+    if (has(device, "EGL_EXT_device_drm")) {
+        if (const char* file = eglQueryDeviceStringEXT(device, EGL_DRM_DEVICE_FILE_EXT))
+            return file;
+    }
+    if (has(device, "EGL_NV_device_cuda")) return "NVIDIA";
+    return "unnamed";
 }
 
 // Not every driver's display can be had; the caller goes on to the next.
@@ -82,36 +114,61 @@ Attempt attempt(EGLenum platform, void* native) {
 }
 
 Attempt firstContext(DevicePreference preference) {
-    const char* client = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
-    const auto has = [&](const char* name) {
-        return client && epoxy_extension_in_string(client, name);
-    };
-    if (!has("EGL_EXT_platform_base")) return {};
-    if (has("EGL_EXT_platform_device") &&
-        (has("EGL_EXT_device_base") || has("EGL_EXT_device_enumeration"))) {
-        for (const EGLDeviceEXT device : orderedDevices(preference)) {
-            if (const Attempt found = attempt(EGL_PLATFORM_DEVICE_EXT, device); found.context) {
-                return found;
-            }
+    if (!clientHas("EGL_EXT_platform_base")) return {};
+    for (const EGLDeviceEXT device : orderedDevices(preference)) {
+        if (const Attempt found = attempt(EGL_PLATFORM_DEVICE_EXT, device); found.context) {
+            return found;
         }
     }
     // Mesa before its device platform; whether it renders in software cannot be asked beforehand.
-    if (preference == DevicePreference::hardwareFirst && has("EGL_MESA_platform_surfaceless")) {
+    if (preference == DevicePreference::hardwareFirst &&
+        clientHas("EGL_MESA_platform_surfaceless")) {
         return attempt(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY);
     }
     return {};
 }
 
-} // namespace
-
-EglContext::EglContext(DevicePreference preference) {
+void prepareEgl() {
     requireLibraries();
     // Mesa writes its own warnings to standard error for every device that it tries in vain.
     setenv("EGL_LOG_LEVEL", "fatal", 0);
+}
+
+} // namespace
+
+EglContext::EglContext(DevicePreference preference) {
+    prepareEgl();
     const Attempt found = firstContext(preference);
     if (!found.context) throw missing("no device here gives OpenGL 4.5");
     display_ = found.display;
     context_ = found.context;
+}
+
+EglContext EglContext::ofDevice(int number) {
+    prepareEgl();
+    const std::vector<EGLDeviceEXT> devices = allDevices();
+    Attempt found;
+    const bool exists = number >= 0 && static_cast<std::size_t>(number) < devices.size();
+    if (exists) {
+        found = attempt(EGL_PLATFORM_DEVICE_EXT, devices[static_cast<std::size_t>(number)]);
+    }
+    if (found.context) return {found.display, found.context};
+    if (devices.empty()) throw missing("there is no device here");
+    std::string names;
+    for (std::size_t i = 0; i < devices.size(); ++i)
+        names += (i ? ", " : "") + std::to_string(i) + " (" + nameOf(devices[i]) + ")";
+    throw Error(ExitCode::missing,
+                "EGL: device " + std::to_string(number) +
+                    (exists ? " gives no OpenGL 4.5" : " is not on this machine") + "; there are " +
+                    names);
+}
+
+std::vector<std::string> eglDevices() {
+    prepareEgl();
+    std::vector<std::string> names;
+    for (const EGLDeviceEXT device : allDevices())
+        names.push_back(nameOf(device));
+    return names;
 }
 
 // The display stays as it is for the life of the process: EGL hands out one display a device,

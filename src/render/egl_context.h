@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace ibl {
 
@@ -10,6 +11,10 @@ enum class DevicePreference {
     hardwareFirst, ///< a graphics card where one gives a context, otherwise software
     software,      ///< Mesa's software rasteriser, the same on every machine
 };
+
+/// The EGL devices of this machine, in EGL's order, each in a few words: the driver's name for it
+/// or its device file, or "software". Throws Error (missing) when there is no EGL.
+std::vector<std::string> eglDevices();
 
 /// An OpenGL 4.5 core context (direct state access) that is current on the thread that made it,
 /// from an EGL device or, failing that, from EGL's surfaceless platform. It is released when the
@@ -21,6 +26,9 @@ enum class DevicePreference {
 class EglContext {
 public:
     explicit EglContext(DevicePreference preference = DevicePreference::hardwareFirst);
+    /// Of that device of eglDevices() alone. Throws Error (missing), naming the devices that there
+    /// are, when it is not among them or gives no OpenGL 4.5.
+    static EglContext ofDevice(int number);
     ~EglContext();
     EglContext(EglContext&& other) noexcept;
     EglContext& operator=(EglContext&& other) noexcept;
@@ -31,6 +39,8 @@ public:
     std::string description() const;
 
 private:
+    EglContext(void* display, void* context) : display_(display), context_(context) {}
+
     void* display_ = nullptr; // EGLDisplay
     void* context_ = nullptr; // EGLContext
 };

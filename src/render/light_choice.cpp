@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace ibl {
 namespace {
@@ -56,23 +57,48 @@ bool facesSphere(const V3d& light, const V3d& eye) {
 
 } // namespace
 
-std::vector<SceneLight> lightsThatShow(const Scene& scene, const V3d& eye, LightCounts& counts) {
+double lowestPoint(const Object& object, const Placement& placement) {
+    const Similarity similarity = similarityOf(placement, extentOf(object));
+    if (!object.mesh) return similarity.shift.y - similarity.scale;
+    double lowest = std::numeric_limits<double>::infinity();
+    for (const V3f& p : object.mesh->positions)
+        lowest = std::min(lowest, similarity.point(V3d(p)).y);
+    return lowest;
+}
+
+std::vector<SceneLight> turnedLights(const std::vector<SceneLight>& lights, const Turn& turn) {
+    const M33d matrix = turnMatrix(turn);
+    std::vector<SceneLight> turned = lights;
+    for (SceneLight& light : turned) {
+        if (light.type == LightType::directional) light.direction = light.direction * matrix;
+    }
+    return turned;
+}
+
+std::vector<SceneLight> lightsThatShow(const Scene& scene, const std::vector<SceneLight>& lights,
+                                       const Similarity& similarity, const V3d& eye,
+                                       LightCounts& counts) {
     const bool lit = shaderInfo(scene.material.shader).lit;
     const Object& object = scene.object;
     std::vector<V3d> normals;
-    if (lit && object.mesh) normals = normalsSeen(*object.mesh, eye);
+    // Facets are looked at where the object is not placed.
+    const M33d object_from_world = similarity.turn.transposed();
+    const V3d brought = (eye - similarity.shift) / similarity.scale * object_from_world;
+    if (lit && object.mesh) normals = normalsSeen(*object.mesh, brought);
     const auto seen = [&](const SceneLight& light) {
         const V3d& l = light.direction;
         if (light.type != LightType::directional) return true;
         if (scene.ground && l.y > 0) return true;
         if (!lit) return false;
-        if (!object.mesh) return facesSphere(l, eye);
-        return std::ranges::any_of(normals, [&](const V3d& n) { return n.dot(l) > -kCellAngle; });
+        const V3d turned = l * object_from_world;
+        if (!object.mesh) return facesSphere(turned, brought);
+        return std::ranges::any_of(normals,
+                                   [&](const V3d& n) { return n.dot(turned) > -kCellAngle; });
     };
     counts = {};
-    counts.given = static_cast<int>(scene.lights.size());
+    counts.given = static_cast<int>(lights.size());
     std::vector<SceneLight> shown;
-    for (const SceneLight& light : scene.lights) {
+    for (const SceneLight& light : lights) {
         if (isBlack(light)) {
             ++counts.black;
         } else if (!seen(light)) {

@@ -76,7 +76,7 @@ Lighting::Lighting(const Scene& scene, int map_size,
       maps_needed_(scene.object.mesh),
       map_size_(map_size) {
     if (maps_needed_) {
-        caster_ = casterOf(*scene.object.mesh);
+        index_count_ = static_cast<GLsizei>(scene.object.mesh->indices.size());
         draw_depth_ =
             makeProgram({{"shadow_map.vert"}, {"shadow_map.frag"}, {}, {}}, shader_folder);
         GLuint id = 0;
@@ -100,8 +100,19 @@ std::vector<std::string> Lighting::definitions() const {
             "SHADOW_MAPS " + std::to_string(maps_needed_ ? 1 : 0)};
 }
 
+void Lighting::place(const Scene& scene, const Turn& turn, const Similarity& similarity) {
+    turned_ = turnedLights(scene.lights, turn);
+    similarity_ = similarity;
+    caster_ = {similarity.shift, similarity.scale, {}};
+    if (!maps_needed_) return;
+    points_.clear();
+    for (const V3f& p : scene.object.mesh->positions)
+        points_.emplace_back(similarity.point(V3d(p)));
+    caster_ = casterOf(points_);
+}
+
 void Lighting::chooseLights(const Scene& scene, const V3d& eye) {
-    lights_ = lightsThatShow(scene, eye, counts_);
+    lights_ = lightsThatShow(scene, turned_, similarity_, eye, counts_);
     ground_irradiance_ = V3d(0);
     for (const SceneLight& light : lights_) {
         if (!isLocal(light)) {
@@ -206,8 +217,8 @@ void Lighting::drawMaps(const Batch& batch, const MeshBuffers& mesh) {
         const float farthest = 1;
         glClearBufferfv(GL_DEPTH, 0, &farthest);
         const ShadowView& view = views_[batch.first_view + static_cast<std::size_t>(layer)];
-        setUniform(draw_depth_, "clip_from_world", M44f(view.clip_from_world));
-        glDrawElements(GL_TRIANGLES, mesh.count, GL_UNSIGNED_INT, nullptr);
+        setUniform(draw_depth_, "clip_from_object", matrixOf(similarity_) * view.clip_from_world);
+        glDrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
     }
     glDisable(GL_DEPTH_TEST);
     glDepthFunc(GL_LEQUAL);
@@ -217,6 +228,8 @@ void Lighting::drawMaps(const Batch& batch, const MeshBuffers& mesh) {
 void Lighting::setUniforms(const Program& program, int batch, const V2d& jitter) const {
     // Not the pixel's own jitter, which moves the surface's points across the maps as well.
     setUniform(program, "texel_jitter", V2d(jitter.y, -jitter.x));
+    setUniform(program, "caster_centre", caster_.centre);
+    setUniform(program, "caster_radius", caster_.radius);
     setUniform(program, "light_count",
                static_cast<int>(batches_[static_cast<std::size_t>(batch)].lights));
     setUniform(program, "first_batch", batch == 0 ? 1 : 0);

@@ -18,7 +18,7 @@ namespace ibl {
 /// anew for each batch, and kept where there is but one.
 class Lighting {
 public:
-    /// `mesh` is what casts shadows, with its mesh on the device; the exact sphere needs no maps.
+    /// The scene's object casts the shadows; the exact sphere needs no maps.
     /// Throws Error (input) where point or spot lights are among more lights than one batch holds.
     Lighting(const Scene& scene, int map_size,
              const std::optional<std::filesystem::path>& shader_folder);
@@ -26,6 +26,8 @@ public:
     /// For every program that includes shaders/lights.glsl.
     std::vector<std::string> definitions() const;
 
+    /// Where the object stands and how the probe, and directional lights with it, is turned.
+    void place(const Scene& scene, const Turn& turn, const Similarity& similarity);
     /// Chooses the lights that show from there.
     void chooseLights(const Scene& scene, const V3d& eye);
     const LightCounts& counts() const { return counts_; }
@@ -55,6 +57,10 @@ private:
     void drawMaps(const Batch& batch, const MeshBuffers& mesh);
 
     bool local_ = false; ///< point or spot lights are among them
+    std::vector<SceneLight> turned_;
+    Similarity similarity_;
+    std::vector<V3f> points_; ///< of the mesh, in the world
+    GLsizei index_count_ = 0;
     Caster caster_;
     bool maps_needed_; ///< the exact sphere has views, but no maps
     int map_size_;

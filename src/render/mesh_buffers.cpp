@@ -18,24 +18,30 @@ MeshBuffers uploadMesh(const Mesh& mesh) {
     };
     MeshBuffers buffers{makeBuffer(bytes(mesh.positions), mesh.positions.data()),
                         makeBuffer(bytes(mesh.normals), mesh.normals.data()),
-                        makeBuffer(bytes(mesh.indices), mesh.indices.data()),
                         {},
-                        static_cast<GLsizei>(mesh.indices.size())};
+                        makeBuffer(bytes(mesh.indices), mesh.indices.data()),
+                        {}};
     GLuint array = 0;
     glCreateVertexArrays(1, &array);
     buffers.array = VertexArray(array);
     glVertexArrayElementBuffer(array, buffers.indices.id());
-    for (const GLuint attribute : {0u, 1u}) {
-        const Buffer& source = attribute == 0 ? buffers.positions : buffers.normals;
-        glVertexArrayVertexBuffer(array, attribute, source.id(), 0, sizeof(V3f));
-        glVertexArrayAttribFormat(array, attribute, 3, GL_FLOAT, GL_FALSE, 0);
+    const auto bind = [&](GLuint attribute, const Buffer& source, GLint components) {
+        glVertexArrayVertexBuffer(array, attribute, source.id(), 0,
+                                  components * static_cast<GLsizei>(sizeof(float)));
+        glVertexArrayAttribFormat(array, attribute, components, GL_FLOAT, GL_FALSE, 0);
         glEnableVertexArrayAttrib(array, attribute);
+    };
+    bind(0, buffers.positions, 3);
+    bind(1, buffers.normals, 3);
+    if (!mesh.texcoords.empty()) {
+        buffers.texcoords = makeBuffer(bytes(mesh.texcoords), mesh.texcoords.data());
+        bind(2, buffers.texcoords, 2);
     }
     checkGl("uploading the object");
     return buffers;
 }
 
-std::optional<M44f> clipFromWorld(const CameraRays& rays, const Box3f& box, const V2d& jitter) {
+std::optional<M44d> clipFromWorld(const CameraRays& rays, const Box3f& box, const V2d& jitter) {
     double nearest = std::numeric_limits<double>::infinity(), farthest = -nearest;
     for (int corner = 0; corner < 8; ++corner) {
         const V3d p(corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
@@ -56,12 +62,11 @@ std::optional<M44f> clipFromWorld(const CameraRays& rays, const Box3f& box, cons
     const double b = -2 * farthest * nearest / (farthest - nearest);
     const V3d& z = rays.forward;
     const std::array<V3d, 4> rows{x - z * shift.x, y - z * shift.y, z * a, z};
-    // Imath's matrices multiply row vectors from the right, which is GL's order in memory.
-    M44f m;
+    M44d m;
     for (int row = 0; row < 4; ++row) {
         for (int i = 0; i < 3; ++i)
-            m[i][row] = static_cast<float>(rows[row][i]);
-        m[3][row] = static_cast<float>(-rows[row].dot(rays.eye) + (row == 2 ? b : 0));
+            m[i][row] = rows[row][i];
+        m[3][row] = -rows[row].dot(rays.eye) + (row == 2 ? b : 0);
     }
     return m;
 }

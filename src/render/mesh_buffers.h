@@ -11,12 +11,11 @@
 
 namespace ibl {
 
-using Imath::M44f;
+using Imath::M44d;
 
 struct MeshBuffers {
-    Buffer positions, normals, indices;
+    Buffer positions, normals, texcoords, indices;
     VertexArray array;
-    GLsizei count = 0;
 };
 
 /// Throws Error when there are more indices than one draw call takes (usage) or no memory
@@ -24,8 +23,8 @@ struct MeshBuffers {
 MeshBuffers uploadMesh(const Mesh& mesh);
 
 /// World to clip space for a frame whose row 0 is its upper one (y is down), the samples `jitter`
-/// from the pixels' centres, near and far plane about the box. Column-major as GL has it. Nothing
-/// when the box is behind the camera.
-std::optional<M44f> clipFromWorld(const CameraRays& rays, const Box3f& box, const V2d& jitter);
+/// from the pixels' centres, near and far plane about the box; for row vectors, which is GL's
+/// column-major order in memory. Nothing when the box is behind the camera.
+std::optional<M44d> clipFromWorld(const CameraRays& rays, const Box3f& box, const V2d& jitter);
 
 } // namespace ibl

@@ -1,74 +1,70 @@
 // Wavefront OBJ through tinyobjloader.
-#include "render/mesh.h"
+#include "render/object_readers.h"
 
 #include "core/error.h"
+#include "image/read.h"
+#include "render/mesh_finish.h"
 
 #include <tiny_obj_loader.h>
 
-#include <array>
-#include <cmath>
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <unordered_map>
+#include <map>
 #include <utility>
 
 namespace ibl {
 namespace {
 
-using Corner = tinyobj::index_t;
-using Triangle = std::array<Corner, 3>;
+namespace fs = std::filesystem;
 
-V3f pointAt(const std::vector<float>& values, int index) {
-    const auto i = 3 * static_cast<std::size_t>(index);
-    return {values[i], values[i + 1], values[i + 2]};
-}
-
-V3d faceNormal(const tinyobj::attrib_t& attributes, const Triangle& t) {
-    const V3d a(pointAt(attributes.vertices, t[0].vertex_index));
-    const V3d b(pointAt(attributes.vertices, t[1].vertex_index));
-    const V3d c(pointAt(attributes.vertices, t[2].vertex_index));
-    return (b - a).cross(c - a);
-}
-
-bool allFinite(const std::vector<float>& values) {
-    for (const float value : values) {
-        if (!std::isfinite(value)) return false;
-    }
-    return true;
-}
-
-struct ObjFile {
+struct Parsed {
     tinyobj::attrib_t attributes;
-    std::vector<Triangle> triangles; // with area; normal index -1 where the file gives none
-};
-
-void requireIndices(const std::string& path, const ObjFile& obj, const Corner& corner) {
-    const auto points = static_cast<int>(obj.attributes.vertices.size() / 3);
-    const auto normals = static_cast<int>(obj.attributes.normals.size() / 3);
-    if (corner.vertex_index < 0 || corner.vertex_index >= points) {
-        throw inputError(path, "a face refers to a vertex that the file does not have; export it "
-                               "again");
-    }
-    if (corner.normal_index >= normals) {
-        throw inputError(path, "a face refers to a normal that the file does not have; export it "
-                               "again");
-    }
-}
-
-ObjFile parse(const std::string& path) {
-    std::error_code ignored;
-    if (std::filesystem::is_directory(path, ignored)) {
-        throw inputError(path, "is a directory; give an OBJ file");
-    }
-    std::ifstream file(path);
-    if (!file) throw inputError(path, "cannot be read; check name and permissions");
-
-    ObjFile obj;
     std::vector<tinyobj::shape_t> shapes;
     std::vector<tinyobj::material_t> materials;
+};
+
+// Material files from the folder of the OBJ, noting which were read.
+class MaterialFiles : public tinyobj::MaterialReader {
+public:
+    MaterialFiles(fs::path folder, ObjectFile& result)
+        : folder_(std::move(folder)), result_(result) {}
+
+    bool operator()(const std::string& name, std::vector<tinyobj::material_t>* materials,
+                    std::map<std::string, int>* places, std::string* warning,
+                    std::string* error) override {
+        const fs::path path = folder_ / name;
+        std::ifstream file(path);
+        if (!file || fs::is_directory(path)) {
+            result_.notes.push_back("its materials, " + name +
+                                    ", cannot be read; all is of one plain material");
+            return true;
+        }
+        result_.files.push_back(path.string());
+        tinyobj::LoadMtl(places, materials, &file, warning, error);
+        return true;
+    }
+
+private:
+    fs::path folder_;
+    ObjectFile& result_;
+};
+
+void requireIndex(const std::string& path, int index, std::size_t values, std::size_t components,
+                  const char* what, bool optional) {
+    const bool absent = index < 0 && optional;
+    if (absent || (index >= 0 && static_cast<std::size_t>(index) < values / components)) return;
+    throw inputError(path, std::string("a face refers to a ") + what +
+                               " that the file does not have; export it again");
+}
+
+Parsed parse(const std::string& path, ObjectFile& result) {
+    std::ifstream file(path);
+    Parsed obj;
     std::string warning, error;
-    const bool loaded = tinyobj::LoadObj(&obj.attributes, &shapes, &materials, &warning, &error,
-                                         &file, nullptr, true, false);
+    MaterialFiles reader(fs::path(path).parent_path(), result);
+    const bool loaded = tinyobj::LoadObj(&obj.attributes, &obj.shapes, &obj.materials, &warning,
+                                         &error, &file, &reader, true, false);
     if (!loaded || file.bad()) {
         throw inputError(path,
                          (error.empty() ? "is no OBJ file" : error.substr(0, error.find('\n'))) +
@@ -77,78 +73,118 @@ ObjFile parse(const std::string& path) {
     // The loader checks the corners of polygons, which it cuts, and leaves those of triangles to
     // us.
     if (warning.find("invalid vertex index") != warning.npos)
-        requireIndices(path, obj, {-1, -1, -1});
-    if (!allFinite(obj.attributes.vertices) || !allFinite(obj.attributes.normals)) {
-        throw inputError(path, "has a coordinate that is not finite; export it again");
-    }
-    for (const tinyobj::shape_t& shape : shapes) {
-        for (std::size_t i = 0; i + 2 < shape.mesh.indices.size(); i += 3) {
-            Triangle t{shape.mesh.indices[i], shape.mesh.indices[i + 1], shape.mesh.indices[i + 2]};
-            for (Corner& corner : t) {
-                requireIndices(path, obj, corner);
-                const bool usable =
-                    corner.normal_index >= 0 &&
-                    pointAt(obj.attributes.normals, corner.normal_index).length() > 0;
-                if (!usable) corner.normal_index = -1;
-            }
-            if (faceNormal(obj.attributes, t).length() > 0) obj.triangles.push_back(t);
+        requireIndex(path, -1, 0, 3, "vertex", false);
+    const tinyobj::attrib_t& a = obj.attributes;
+    for (const tinyobj::shape_t& shape : obj.shapes) {
+        for (const tinyobj::index_t& corner : shape.mesh.indices) {
+            requireIndex(path, corner.vertex_index, a.vertices.size(), 3, "vertex", false);
+            requireIndex(path, corner.normal_index, a.normals.size(), 3, "normal", true);
+            requireIndex(path, corner.texcoord_index, a.texcoords.size(), 2, "texture coordinate",
+                         true);
         }
     }
-    if (obj.triangles.empty()) throw inputError(path, "holds no triangle; give a mesh with faces");
     return obj;
 }
 
-// The normal at each vertex: the mean of its faces' normals, weighted by their angle there
-// (Thuermer and Wuethrich 1998), which does not depend on how a face was cut into triangles.
-std::vector<V3d> smoothNormals(const ObjFile& obj) {
-    std::vector<V3d> normals(obj.attributes.vertices.size() / 3, V3d(0));
-    for (const Triangle& t : obj.triangles) {
-        const V3d face = faceNormal(obj.attributes, t).normalized();
-        for (std::size_t k = 0; k < 3; ++k) {
-            const auto at = [&](std::size_t i) {
-                return V3d(pointAt(obj.attributes.vertices, t[i % 3].vertex_index));
-            };
-            const V3d a = at(k + 1) - at(k), b = at(k + 2) - at(k);
-            const double angle = std::atan2(a.cross(b).length(), a.dot(b));
-            normals[static_cast<std::size_t>(t[k].vertex_index)] += face * angle;
+// Corners with the same position, normal and texture coordinate become one vertex. Those of a
+// position are a chain.
+class Vertices {
+public:
+    Vertices(const tinyobj::attrib_t& attributes, Mesh& mesh)
+        : a_(attributes), mesh_(mesh), newest_(attributes.vertices.size() / 3, kNone) {}
+
+    std::uint32_t of(const tinyobj::index_t& corner) {
+        const auto position = static_cast<std::size_t>(corner.vertex_index);
+        for (std::uint32_t v = newest_[position]; v != kNone; v = known_[v].older) {
+            if (known_[v].normal == corner.normal_index &&
+                known_[v].texcoord == corner.texcoord_index)
+                return v;
         }
+        const auto made = static_cast<std::uint32_t>(mesh_.positions.size());
+        known_.push_back({corner.normal_index, corner.texcoord_index, newest_[position]});
+        newest_[position] = made;
+        mesh_.positions.push_back(triple(a_.vertices, corner.vertex_index));
+        mesh_.normals.push_back(corner.normal_index < 0 ? V3f(0)
+                                                        : triple(a_.normals, corner.normal_index));
+        if (!a_.texcoords.empty()) {
+            const auto t = 2 * static_cast<std::size_t>(std::max(corner.texcoord_index, 0));
+            // v runs up in OBJ files.
+            mesh_.texcoords.emplace_back(a_.texcoords[t], 1 - a_.texcoords[t + 1]);
+        }
+        return made;
     }
-    return normals;
+
+private:
+    static constexpr std::uint32_t kNone = 0xFFFFFFFF;
+    struct Known {
+        int normal, texcoord;
+        std::uint32_t older;
+    };
+
+    static V3f triple(const std::vector<float>& values, int index) {
+        const auto i = 3 * static_cast<std::size_t>(index);
+        return {values[i], values[i + 1], values[i + 2]};
+    }
+
+    const tinyobj::attrib_t& a_;
+    Mesh& mesh_;
+    std::vector<std::uint32_t> newest_; ///< by position
+    std::vector<Known> known_;          ///< by vertex
+};
+
+std::optional<std::size_t> addTexture(const std::string& path, const std::string& name, int threads,
+                                      ObjectFile& result,
+                                      std::map<std::string, std::size_t>& known) {
+    if (name.empty()) return std::nullopt;
+    std::string portable = name;
+    std::ranges::replace(portable, '\\', '/');
+    const std::string file = (fs::path(path).parent_path() / portable).string();
+    const auto [place, is_new] = known.try_emplace(file, result.object.textures.size());
+    if (is_new) {
+        ReadOptions how;
+        how.threads = threads;
+        result.object.textures.push_back({readImage(file, how).image, Wrap::repeat, Wrap::repeat});
+        result.files.push_back(file);
+    }
+    return place->second;
 }
 
 } // namespace
 
-Mesh loadObj(const std::string& path) {
-    const ObjFile obj = parse(path);
-    const std::vector<V3d> smooth = smoothNormals(obj);
+ObjectFile readObj(const std::string& path, int threads) {
+    ObjectFile result;
+    result.files.push_back(path);
+    const Parsed obj = parse(path, result);
     Mesh mesh;
-    mesh.indices.reserve(3 * obj.triangles.size());
-    std::unordered_map<std::uint64_t, std::uint32_t> seen; // (vertex, normal) -> index in the mesh
-    const auto vertexOf = [&](const Corner& corner, const V3d& face) {
-        const auto key = static_cast<std::uint64_t>(corner.vertex_index) << 32 |
-                         static_cast<std::uint32_t>(corner.normal_index);
-        const auto [place, is_new] =
-            seen.try_emplace(key, static_cast<std::uint32_t>(mesh.positions.size()));
-        if (is_new) {
-            V3d normal = corner.normal_index >= 0
-                             ? V3d(pointAt(obj.attributes.normals, corner.normal_index))
-                             : smooth[static_cast<std::size_t>(corner.vertex_index)];
-            if (!(normal.length() > 1e-9)) normal = face; // faces back to back cancel
-            mesh.positions.push_back(pointAt(obj.attributes.vertices, corner.vertex_index));
-            mesh.normals.emplace_back(normal.normalized());
+    Vertices vertices(obj.attributes, mesh);
+    std::vector<std::uint32_t> position_of;
+    std::vector<std::vector<std::uint32_t>> indices(obj.materials.size() + 1); // none, and each
+    for (const tinyobj::shape_t& shape : obj.shapes) {
+        for (std::size_t i = 0; i < shape.mesh.indices.size(); ++i) {
+            const tinyobj::index_t& corner = shape.mesh.indices[i];
+            const int material = shape.mesh.material_ids[i / 3];
+            indices[static_cast<std::size_t>(material + 1)].push_back(vertices.of(corner));
+            if (position_of.size() < mesh.positions.size())
+                position_of.push_back(static_cast<std::uint32_t>(corner.vertex_index));
         }
-        return place->second;
-    };
-    for (const Triangle& t : obj.triangles) {
-        const V3d face = faceNormal(obj.attributes, t);
-        std::uint32_t a = vertexOf(t[0], face), b = vertexOf(t[1], face), c = vertexOf(t[2], face);
-        const V3d shading(mesh.normals[a] + mesh.normals[b] + mesh.normals[c]);
-        const bool given =
-            t[0].normal_index >= 0 && t[1].normal_index >= 0 && t[2].normal_index >= 0;
-        if (given && face.dot(shading) < 0) std::swap(b, c);
-        mesh.indices.insert(mesh.indices.end(), {a, b, c});
     }
-    return mesh;
+    std::map<std::string, std::size_t> textures;
+    for (std::size_t id = 0; id < indices.size(); ++id) {
+        if (indices[id].empty()) continue;
+        Part part{mesh.indices.size(), indices[id].size(), {}};
+        mesh.indices.insert(mesh.indices.end(), indices[id].begin(), indices[id].end());
+        if (id > 0) {
+            const tinyobj::material_t& m = obj.materials[id - 1];
+            part.surface.base_color = {m.diffuse[0], m.diffuse[1], m.diffuse[2]};
+            part.surface.emissive = {m.emission[0], m.emission[1], m.emission[2]};
+            part.surface.base_texture =
+                addTexture(path, m.diffuse_texname, threads, result, textures);
+        }
+        result.object.parts.push_back(std::move(part));
+    }
+    finishMesh(path, mesh, result.object.parts, position_of);
+    result.object.mesh = std::move(mesh);
+    return result;
 }
 
 } // namespace ibl

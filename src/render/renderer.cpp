@@ -1,17 +1,18 @@
 #include "render/renderer.h"
 
 #include "core/error.h"
+#include "render/light_choice.h"
 #include "render/lighting.h"
 #include "render/mesh_buffers.h"
 #include "render/panorama_texture.h"
 #include "render/sample_pattern.h"
 #include "render/shader_program.h"
+#include "render/surface_textures.h"
 #include "render/uniforms.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <limits>
 
 namespace ibl {
@@ -35,6 +36,22 @@ int shadowSize(const FrameOptions& options) {
     return size;
 }
 
+void setView(const Program& program, const CameraRays& rays, const V2i& tile, const V2d& jitter) {
+    setUniform(program, "pixel_offset", V2d(tile) + jitter - rays.centre);
+    setUniform(program, "forward", rays.forward);
+    setUniform(program, "step_x", rays.step_x);
+    setUniform(program, "step_y", rays.step_y);
+}
+
+void setUpDrawing(int frame_width) {
+    glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
+    glFrontFace(GL_CW);     // counter-clockwise, in a frame whose y is down
+    glDepthFunc(GL_LEQUAL); // the background stands at the far plane itself
+    glBlendFunc(GL_ONE, GL_ONE);
+    glPixelStorei(GL_PACK_ROW_LENGTH, frame_width);
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+}
+
 } // namespace
 
 bool needsProbe(const Material& material, const Background& background) {
@@ -46,13 +63,15 @@ bool needsDiffuse(const Material& material) {
     return shaderInfo(material.shader).reads_diffuse;
 }
 
-using MakeProgram = std::function<Program(std::string_view, std::vector<std::string_view>)>;
-
 struct Renderer::State {
     FrameOptions options;
     bool opaque = true;
     V3f clear_color{0, 0, 0};
-    Box3f box;
+    Extent extent;
+    std::vector<Part> parts;
+    SurfaceTextures surfaces;
+    Material material;
+    Similarity similarity;
     PanoramaTexture probe, diffuse;
     Texture image;
     std::optional<MeshBuffers> mesh;
@@ -64,35 +83,41 @@ struct Renderer::State {
     const Scene* light_scene = nullptr; ///< of which `lighting` chooses lights
 
     Program surface, under_lights, ground_shadow, background, accumulate, resolve;
+    Program aov; ///< when first asked for
     // One tile: a sample, the sum of samples, and the picture as it is read.
     Texture sample, sum, mean;
     Renderbuffer depth;
     Framebuffer to_sample, to_sum, to_mean;
-    std::array<Texture, 3> lit_points; ///< points, normals and facets' normals of a lit surface
+    std::array<Texture, 4> lit_points; ///< points, normals, facets' normals, colours
     Framebuffer to_points;             ///< these, with `sample` and its depth
     Texture kept;                      ///< from the ground
     Framebuffer to_kept;
 
+    std::vector<std::string> mapDefinitions() const;
+    Program surfaceProgram(std::string_view shader) const;
     void uploadScene(const Scene& scene);
     void makePrograms(const Scene& scene);
-    void makeBackground(const Scene& scene, const MakeProgram& program);
-    static void setMaterial(const Program& program, const Material& material);
+    void makeBackground(const Scene& scene);
+    void makeGround();
+    void setMaterial(const Material& material);
+    void place(const Turn& turn, const Placement& placement);
     void makeTargets();
     void makePointTargets(const V2i& size);
 
     V2i tileSize() const;
     void drawFullscreen(const Program& program) const;
-    void lightSurface(const CameraRays& rays, const V2d& offset, const V2d& jitter,
-                      int batch) const;
-    void drawGroundShadow(const CameraRays& rays, const V2d& offset, const V2d& jitter,
+    void lightSurface(const CameraRays& rays, const V2i& tile, const V2d& jitter, int batch) const;
+    void drawGroundShadow(const CameraRays& rays, const V2i& tile, const V2d& jitter,
                           int batch) const;
     void drawSample(const CameraRays& rays, const V2i& tile, const V2d& jitter, int batch) const;
-    void drawBackground(const CameraRays& rays, const V2i& tile, int batch) const;
-    void drawSphere(const CameraRays& rays, const V2i& tile) const;
-    void drawMesh(const CameraRays& rays, const V2d& jitter) const;
+    void drawSphere(const Program& program, const CameraRays& rays, const V2i& tile) const;
+    void drawObject(const Program& program, const CameraRays& rays, const V2i& tile,
+                    const V2d& jitter) const;
+    void drawMesh(const Program& program, const CameraRays& rays, const V2d& jitter) const;
     void drawTile(const CameraRays& rays, const V2i& tile);
     void placeLights(const CameraRays& rays);
     void drawFrame(const Camera& camera, Image& frame);
+    void drawAovs(const Camera& camera, FrameAovs& aovs);
 };
 
 void Renderer::State::uploadScene(const Scene& scene) {
@@ -112,62 +137,74 @@ void Renderer::State::uploadScene(const Scene& scene) {
     }
     if (const auto* color = std::get_if<ColorBackground>(&scene.background)) clear_color = *color;
     opaque = !std::holds_alternative<NoBackground>(scene.background);
-    box = bounds(scene.object);
+    extent = extentOf(scene.object);
+    parts = partsOf(scene.object);
+    surfaces = uploadSurfaces(scene.object);
     if (scene.object.mesh) mesh = uploadMesh(*scene.object.mesh);
     lit = shaderInfo(scene.material.shader).lit;
     ground = scene.ground;
     if (!lit && !ground) return;
     if (scene.lights.empty()) throw usage("nothing lights the picture; give lights");
-    if (ground && ground->height > box.min.y + 1e-5 * box.size().length())
-        throw usage("the ground cuts the object; lower it to " + std::to_string(box.min.y));
     light_scene = &scene;
     lighting.emplace(scene, shadowSize(options), options.shader_folder);
 }
 
-void Renderer::State::makePrograms(const Scene& scene) {
+std::vector<std::string> Renderer::State::mapDefinitions() const {
     std::vector<std::string> definitions = probe.definitions("PROBE");
+    for (const std::string& d : diffuse.definitions("DIFFUSE"))
+        definitions.push_back(d);
     const auto define = [&](const std::vector<std::string>& more) {
         definitions.insert(definitions.end(), more.begin(), more.end());
     };
-    define(diffuse.definitions("DIFFUSE"));
     if (lighting) define(lighting->definitions());
     if (ground) {
         define({"GROUND_ALBEDO " + std::to_string(ground->albedo.has_value()),
                 "GROUND_ALPHA " + std::to_string(!opaque)});
     }
-    const auto& folder = options.shader_folder;
-    const auto program = [&](std::string_view vertex, std::vector<std::string_view> fragment) {
-        std::vector<std::string_view> vertex_files{vertex};
-        if (vertex == "ground_shadow.vert")
-            vertex_files.insert(vertex_files.begin(), "light_blocks.glsl");
-        return makeProgram({vertex_files, std::move(fragment), definitions, {}}, folder);
-    };
-    std::vector<std::string_view> files{"view.glsl", "lookup.glsl", "maps.glsl"};
-    const std::string_view material = shaderInfo(scene.material.shader).file;
-    files.push_back(lit ? "lit_points.glsl" : material);
-    files.push_back(mesh ? "mesh_surface.frag" : "sphere_surface.frag");
-    surface = program(mesh ? "mesh.vert" : "fullscreen.vert", files);
-    setMaterial(surface, scene.material);
-    if (lit) {
-        under_lights = program("fullscreen.vert", {"view.glsl", "light_blocks.glsl", "lights.glsl",
-                                                   "tangent.glsl", material, "lit.frag"});
-        setMaterial(under_lights, scene.material);
-    }
-    makeBackground(scene, program);
     define({"KEEP_POSITIVE " + std::to_string(ground && ground->albedo)});
-    resolve = program("fullscreen.vert", {"resolve.frag"});
-    if (options.samples > 1 || lighting)
-        accumulate = program("fullscreen.vert", {"accumulate.frag"});
+    return definitions;
+}
+
+// Draws the object with a file that defines shade().
+Program Renderer::State::surfaceProgram(std::string_view shader) const {
+    std::vector<std::string> definitions = mapDefinitions();
+    for (const std::string& d : surfaces.definitions)
+        definitions.push_back(d);
+    return makeProgram({{mesh ? "mesh.vert" : "fullscreen.vert"},
+                        {"view.glsl", "lookup.glsl", "maps.glsl", "surface.glsl", shader,
+                         mesh ? "mesh_surface.frag" : "sphere_surface.frag"},
+                        definitions,
+                        {}},
+                       options.shader_folder);
+}
+
+void Renderer::State::makePrograms(const Scene& scene) {
+    const auto program = [&](std::vector<std::string_view> fragment) {
+        return makeProgram({{"fullscreen.vert"}, std::move(fragment), mapDefinitions(), {}},
+                           options.shader_folder);
+    };
+    const std::string_view file = shaderInfo(scene.material.shader).file;
+    surface = surfaceProgram(lit ? "lit_points.glsl" : file);
+    if (lit) {
+        under_lights = program(
+            {"view.glsl", "light_blocks.glsl", "lights.glsl", "tangent.glsl", file, "lit.frag"});
+    }
+    makeBackground(scene);
+    if (ground) makeGround();
+    resolve = program({"resolve.frag"});
+    if (options.samples > 1 || lighting) accumulate = program({"accumulate.frag"});
     // Each sample goes into the sum by the weight 2^-k, where 2^k >= samples.
     const double weight = std::exp2(-std::ceil(std::log2(options.samples)));
     if (accumulate) setUniform(accumulate, "weight", weight);
     setUniform(resolve, "sum_weight", weight * options.samples);
+    setMaterial(scene.material);
+    place(scene.turn, scene.placement);
 }
 
-void Renderer::State::makeBackground(const Scene& scene, const MakeProgram& program) {
-    std::vector<std::string_view> files{"view.glsl"};
+void Renderer::State::makeBackground(const Scene& scene) {
+    std::vector<std::string_view> files{"view.glsl", "lookup.glsl", "maps.glsl"};
     if (std::holds_alternative<ProbeBackground>(scene.background)) {
-        files.insert(files.end(), {"lookup.glsl", "maps.glsl", "background_probe.glsl"});
+        files.push_back("background_probe.glsl");
     } else if (image) {
         files.push_back("background_image.glsl");
     } else if (ground) {
@@ -175,37 +212,62 @@ void Renderer::State::makeBackground(const Scene& scene, const MakeProgram& prog
     } else {
         return;
     }
-    if (!ground) {
-        files.push_back("background.frag");
-        background = program("fullscreen.vert", files);
-        return;
+    if (ground) {
+        for (const std::string_view file : {"light_blocks.glsl", "lights.glsl", "ground.glsl"})
+            files.push_back(file);
     }
-    const auto under = {"light_blocks.glsl", "lights.glsl", "ground.glsl"};
-    files.insert(files.end(), under.begin(), under.end());
-    files.push_back("ground.frag");
-    background = program("fullscreen.vert", files);
+    files.push_back(ground ? "ground.frag" : "background.frag");
+    background =
+        makeProgram({{"fullscreen.vert"}, files, mapDefinitions(), {}}, options.shader_folder);
+}
+
+void Renderer::State::makeGround() {
     setUniform(background, "plain_color", V3d(clear_color));
     setUniform(background, "plain_alpha", opaque ? 1.0 : 0.0);
     setUniform(background, "ground_height", ground->height);
     if (ground->albedo) setUniform(background, "ground_albedo", *ground->albedo);
-    files.assign({"view.glsl"});
-    files.insert(files.end(), under.begin(), under.end());
-    files.push_back("ground_shadow.frag");
-    ground_shadow = program("ground_shadow.vert", files);
+    ground_shadow = makeProgram(
+        {{"light_blocks.glsl", "ground_shadow.vert"},
+         {"view.glsl", "light_blocks.glsl", "lights.glsl", "ground.glsl", "ground_shadow.frag"},
+         mapDefinitions(),
+         {}},
+        options.shader_folder);
     setUniform(ground_shadow, "ground_height", ground->height);
     setUniform(ground_shadow, "map_size", V2d(lighting->mapSize()));
 }
 
-void Renderer::State::setMaterial(const Program& program, const Material& material) {
+void Renderer::State::place(const Turn& turn, const Placement& placement) {
+    similarity = similarityOf(placement, extent);
+    if (lighting) {
+        lighting->place(*light_scene, turn, similarity);
+        const double lowest = lowestPoint(light_scene->object, placement);
+        if (ground && ground->height > lowest + 1e-5 * similarity.scale * extent.radius)
+            throw usage("the ground cuts the object; lower it to " + std::to_string(lowest));
+    }
+    if (lit) {
+        const M33d& t = similarity.turn;
+        setUniform(under_lights, "object_right", V3d(t[0][0], t[0][1], t[0][2]));
+        setUniform(under_lights, "object_up", V3d(t[1][0], t[1][1], t[1][2]));
+    }
+    const M33d probe_from_world = turnMatrix(turn).transposed();
+    setUniform(surface, "probe_from_world", probe_from_world);
+    if (background) setUniform(background, "probe_from_world", probe_from_world);
+}
+
+void Renderer::State::setMaterial(const Material& of_object) {
+    material = of_object;
     for (const Parameter parameter : shaderInfo(material.shader).parameters) {
         const ParameterInfo& info = parameterInfo(parameter);
         std::string uniform(info.name);
         std::ranges::replace(uniform, '-', '_');
         const V3d& value = material[parameter];
-        if (info.components == 3) {
-            setUniform(program, uniform.c_str(), value);
-        } else {
-            setUniform(program, uniform.c_str(), value.x);
+        for (const Program* program : {&surface, &under_lights}) {
+            if (!*program) continue;
+            if (info.components == 3) {
+                setUniform(*program, uniform.c_str(), value);
+            } else {
+                setUniform(*program, uniform.c_str(), value.x);
+            }
         }
     }
 }
@@ -237,7 +299,7 @@ void Renderer::State::makeTargets() {
 
 void Renderer::State::makePointTargets(const V2i& size) {
     to_points = makeFramebuffer(sample, depth.id());
-    std::array<GLenum, 4> buffers{GL_COLOR_ATTACHMENT0};
+    std::array<GLenum, 5> buffers{GL_COLOR_ATTACHMENT0};
     for (std::size_t i = 0; i < lit_points.size(); ++i) {
         lit_points[i] = makeTexture(GL_TEXTURE_2D, GL_RGBA32F, size.x, size.y);
         buffers[i + 1] = GL_COLOR_ATTACHMENT1 + static_cast<GLenum>(i);
@@ -253,42 +315,64 @@ void Renderer::State::drawFullscreen(const Program& program) const {
     glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
-void Renderer::State::drawSphere(const CameraRays& rays, const V2i& tile) const {
-    setUniform(surface, "eye", rays.eye);
-    setUniform(surface, "moment_forward", rays.eye.cross(rays.forward));
-    setUniform(surface, "moment_x", rays.eye.cross(rays.step_x));
-    setUniform(surface, "moment_y", rays.eye.cross(rays.step_y));
-    const PixelRect rect = unitSphereRect(rays, options.width, options.height);
+// The camera is brought to the unit sphere; directions stay as they are.
+void Renderer::State::drawSphere(const Program& program, const CameraRays& rays,
+                                 const V2i& tile) const {
+    CameraRays brought = rays;
+    brought.eye = (rays.eye - similarity.shift) / similarity.scale;
+    setUniform(program, "sphere_eye", brought.eye);
+    setUniform(program, "moment_forward", brought.eye.cross(rays.forward));
+    setUniform(program, "moment_x", brought.eye.cross(rays.step_x));
+    setUniform(program, "moment_y", brought.eye.cross(rays.step_y));
+    setUniform(program, "sphere_radius", similarity.scale);
+    setUniform(program, "sphere_centre", similarity.shift);
+    setUniform(program, "object_from_world", similarity.turn.transposed());
+    const PixelRect rect = unitSphereRect(brought, options.width, options.height);
     glScissor(rect.min.x - tile.x, rect.min.y - tile.y, rect.max.x - rect.min.x,
               rect.max.y - rect.min.y);
     glEnable(GL_SCISSOR_TEST);
     glDepthRange(0, 0); // whatever the triangle's depth is: the background stays behind
-    drawFullscreen(surface);
+    drawFullscreen(program);
     glDepthRange(0, 1);
     glDisable(GL_SCISSOR_TEST);
 }
 
-void Renderer::State::drawMesh(const CameraRays& rays, const V2d& jitter) const {
+void Renderer::State::drawMesh(const Program& program, const CameraRays& rays,
+                               const V2d& jitter) const {
+    const M44d world_from_object = matrixOf(similarity);
+    Box3f box; // in the world
+    for (int corner = 0; corner < 8; ++corner) {
+        const Box3f& b = extent.box;
+        const V3d p(corner & 1 ? b.max.x : b.min.x, corner & 2 ? b.max.y : b.min.y,
+                    corner & 4 ? b.max.z : b.min.z);
+        box.extendBy(V3f(similarity.point(p)));
+    }
     const auto clip_from_world = clipFromWorld(rays, box, jitter);
     if (!clip_from_world) return;
-    setUniform(surface, "clip_from_world", *clip_from_world);
-    glUseProgram(surface.id());
+    setUniform(program, "clip_from_object", world_from_object * *clip_from_world);
+    setUniform(program, "world_from_object", world_from_object);
+    glUseProgram(program.id());
     glBindVertexArray(mesh->array.id());
-    glDrawElements(GL_TRIANGLES, mesh->count, GL_UNSIGNED_INT, nullptr);
+    for (const Part& part : parts) {
+        bindSurface(surfaces, program, material, part.surface);
+        setUniform(program, "part_id", static_cast<double>(&part - parts.data() + 1));
+        glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(part.count), GL_UNSIGNED_INT,
+                       reinterpret_cast<const void*>(part.first * sizeof(std::uint32_t)));
+    }
 }
 
-// What every program that includes shaders/view.glsl wants, of one sample of a tile.
-void setView(const Program& program, const CameraRays& rays, const V2d& offset) {
-    setUniform(program, "pixel_offset", offset);
-    setUniform(program, "forward", rays.forward);
-    setUniform(program, "step_x", rays.step_x);
-    setUniform(program, "step_y", rays.step_y);
+void Renderer::State::drawObject(const Program& program, const CameraRays& rays, const V2i& tile,
+                                 const V2d& jitter) const {
+    if (mesh) return drawMesh(program, rays, jitter);
+    bindSurface(surfaces, program, material, parts[0].surface);
+    setUniform(program, "part_id", 1.0);
+    drawSphere(program, rays, tile);
 }
 
 // Adds the batch's lights to the object's samples: a full-screen pass behind nothing but them.
-void Renderer::State::lightSurface(const CameraRays& rays, const V2d& offset, const V2d& jitter,
+void Renderer::State::lightSurface(const CameraRays& rays, const V2i& tile, const V2d& jitter,
                                    int batch) const {
-    setView(under_lights, rays, offset);
+    setView(under_lights, rays, tile, jitter);
     lighting->setUniforms(under_lights, batch, jitter);
     for (GLuint i = 0; i < lit_points.size(); ++i)
         glBindTextureUnit(4 + i, lit_points[i].id());
@@ -302,12 +386,12 @@ void Renderer::State::lightSurface(const CameraRays& rays, const V2d& offset, co
 }
 
 // What the batch's lights are kept from shining on the ground, light by light where its map lies.
-void Renderer::State::drawGroundShadow(const CameraRays& rays, const V2d& offset, const V2d& jitter,
+void Renderer::State::drawGroundShadow(const CameraRays& rays, const V2i& tile, const V2d& jitter,
                                        int batch) const {
     glBindFramebuffer(GL_FRAMEBUFFER, to_kept.id());
     const std::array<float, 4> nothing{};
     glClearBufferfv(GL_COLOR, 0, nothing.data());
-    setView(ground_shadow, rays, offset);
+    setView(ground_shadow, rays, tile, jitter);
     lighting->setUniforms(ground_shadow, batch, jitter);
     setUniform(ground_shadow, "eye", rays.eye);
     // Whatever box is before the eye: depth is not used.
@@ -320,7 +404,7 @@ void Renderer::State::drawGroundShadow(const CameraRays& rays, const V2d& offset
     glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, lighting->viewCount(batch));
     glDisable(GL_BLEND);
     glDisable(GL_CLIP_DISTANCE0);
-    glBindTextureUnit(7, kept.id());
+    glBindTextureUnit(9, kept.id());
 }
 
 // One sample a pixel of a tile. `jitter` is the sample's place from the pixel's centre. The
@@ -329,8 +413,7 @@ void Renderer::State::drawGroundShadow(const CameraRays& rays, const V2d& offset
 void Renderer::State::drawSample(const CameraRays& rays, const V2i& tile, const V2d& jitter,
                                  int batch) const {
     glViewport(-tile.x, -tile.y, options.width, options.height);
-    const V2d offset = V2d(tile) + jitter - rays.centre;
-    if (ground) drawGroundShadow(rays, offset, jitter, batch);
+    if (ground) drawGroundShadow(rays, tile, jitter, batch);
     glBindFramebuffer(GL_FRAMEBUFFER, to_sample.id());
     if (!background || batch > 0) {
         const V3f color_behind = batch > 0 ? V3f(0) : clear_color;
@@ -343,17 +426,13 @@ void Renderer::State::drawSample(const CameraRays& rays, const V2i& tile, const 
     glEnable(GL_DEPTH_TEST);
     if (lit) glBindFramebuffer(GL_FRAMEBUFFER, to_points.id());
     glColorMaski(0, batch == 0, batch == 0, batch == 0, batch == 0);
-    setView(surface, rays, offset);
-    if (mesh) {
-        drawMesh(rays, jitter);
-    } else {
-        drawSphere(rays, tile);
-    }
+    setView(surface, rays, tile, jitter);
+    drawObject(surface, rays, tile, jitter);
     glColorMaski(0, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     glBindFramebuffer(GL_FRAMEBUFFER, to_sample.id());
-    if (lit) lightSurface(rays, offset, jitter, batch);
+    if (lit) lightSurface(rays, tile, jitter, batch);
     if (background && (batch == 0 || ground)) {
-        setView(background, rays, offset);
+        setView(background, rays, tile, jitter);
         setUniform(background, "tile_origin", tile);
         if (ground) lighting->setUniforms(background, batch, jitter);
         drawFullscreen(background);
@@ -396,14 +475,9 @@ void Renderer::State::drawFrame(const Camera& camera, Image& frame) {
     const CameraRays rays = cameraRays(camera, options.width, options.height);
     placeLights(rays);
     const V2i size = tileSize();
-    glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
-    glFrontFace(GL_CW);     // counter-clockwise, in a frame whose y is down
-    glDepthFunc(GL_LEQUAL); // the background stands at the far plane itself
-    glBlendFunc(GL_ONE, GL_ONE);
+    setUpDrawing(options.width);
     glBindTextureUnit(1, diffuse.texture.id());
     glBindTextureUnit(2, image.id());
-    glPixelStorei(GL_PACK_ROW_LENGTH, options.width);
-    glPixelStorei(GL_PACK_ALIGNMENT, 1);
     for (int y = 0; y < options.height; y += size.y) {
         for (int x = 0; x < options.width; x += size.x) {
             drawTile(rays, {x, y});
@@ -417,6 +491,44 @@ void Renderer::State::drawFrame(const Camera& camera, Image& frame) {
         }
     }
     checkGl("drawing the picture");
+}
+
+void Renderer::State::drawAovs(const Camera& camera, FrameAovs& aovs) {
+    if (!aov) aov = surfaceProgram("aov.frag");
+    const CameraRays rays = cameraRays(camera, options.width, options.height);
+    const V2i size = tileSize();
+    const Texture normals = makeTexture(GL_TEXTURE_2D, GL_RGBA32F, size.x, size.y);
+    const Texture others = makeTexture(GL_TEXTURE_2D, GL_RG32F, size.x, size.y);
+    const Framebuffer target = makeFramebuffer(normals, depth.id());
+    glNamedFramebufferTexture(target.id(), GL_COLOR_ATTACHMENT1, others.id(), 0);
+    const std::array<GLenum, 2> outputs{GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
+    glNamedFramebufferDrawBuffers(target.id(), 2, outputs.data());
+    setUpDrawing(options.width);
+    const std::array<float, 4> nothing{0, 0, 0, 0}, far_away{kNoDepth, 0, 0, 0};
+    const float far_depth = 1;
+    for (int y = 0; y < options.height; y += size.y) {
+        for (int x = 0; x < options.width; x += size.x) {
+            glBindFramebuffer(GL_FRAMEBUFFER, target.id());
+            glViewport(-x, -y, options.width, options.height);
+            glClearBufferfv(GL_COLOR, 0, nothing.data());
+            glClearBufferfv(GL_COLOR, 1, far_away.data());
+            glClearBufferfv(GL_DEPTH, 0, &far_depth);
+            glEnable(GL_DEPTH_TEST);
+            setView(aov, rays, {x, y}, V2d(0));
+            drawObject(aov, rays, {x, y}, V2d(0));
+            glDisable(GL_DEPTH_TEST);
+            const auto read = [&](GLenum output, GLenum format, float* to) {
+                glReadBuffer(output);
+                glReadPixels(0, 0, std::min(size.x, options.width - x),
+                             std::min(size.y, options.height - y), format, GL_FLOAT, to);
+            };
+            const std::size_t first = static_cast<std::size_t>(y) * options.width + x;
+            read(GL_COLOR_ATTACHMENT0, GL_RGB, aovs.normal.at(x, y));
+            read(GL_COLOR_ATTACHMENT1, GL_RED, aovs.depth.data() + first);
+            read(GL_COLOR_ATTACHMENT1, GL_GREEN, aovs.id.data() + first);
+        }
+    }
+    checkGl("drawing normals, depth and ids");
 }
 
 Renderer::Renderer(const EglContext&, const Scene& scene, const FrameOptions& options)
@@ -439,6 +551,11 @@ Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
+void Renderer::change(const Material& material, const Turn& turn, const Placement& placement) {
+    state_->setMaterial(material);
+    state_->place(turn, placement);
+}
+
 Image Renderer::render(const Camera& camera) {
     Image frame(state_->options.width, state_->options.height, state_->opaque ? 3 : 4);
     state_->drawFrame(camera, frame);
@@ -447,6 +564,14 @@ Image Renderer::render(const Camera& camera) {
 
 LightCounts Renderer::lightCounts() const {
     return state_->lighting ? state_->lighting->counts() : LightCounts{};
+}
+
+FrameAovs Renderer::renderAovs(const Camera& camera) {
+    const int width = state_->options.width, height = state_->options.height;
+    const std::size_t pixels = static_cast<std::size_t>(width) * height;
+    FrameAovs aovs{Image(width, height), std::vector<float>(pixels), std::vector<float>(pixels)};
+    state_->drawAovs(camera, aovs);
+    return aovs;
 }
 
 } // namespace ibl

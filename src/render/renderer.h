@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <vector>
 
 namespace ibl {
 
@@ -22,13 +23,22 @@ struct FrameOptions {
     int shadow_size = 0;
 };
 
+/// What is known of a frame beside its colours, at the centre of each pixel: nothing of it is
+/// anti-aliased.
+struct FrameAovs {
+    Image normal;             ///< unit, in the world, turned to the eye; 0 where the object is not
+    std::vector<float> depth; ///< along the view; kNoDepth where the object is not
+    std::vector<float> id;    ///< the object's part, from 1; 0 where the object is not
+};
+constexpr float kNoDepth = 1e10F;
+
 /// A scene on the graphics device, ready to be drawn. The context must be current and outlive it,
 /// and so must a scene with lights.
 ///
 /// Throws Error: usage for frames the device cannot draw (a side over its limit, samples < 1), for
-/// a background image of another size, for a missing map, and for a ground that cuts the object or
-/// a lit material without lights; input for shaders from the folder that do not compile, with file
-/// and line, and for probes larger than the device's textures.
+/// a background image of another size, for a missing map, for lit materials and grounds without
+/// lights and for a ground that cuts the object; input for shaders from the folder that do not
+/// compile, with file and line, and for probes larger than the device's textures.
 class Renderer {
 public:
     Renderer(const EglContext& context, const Scene& scene, const FrameOptions& options);
@@ -36,12 +46,18 @@ public:
     Renderer(Renderer&&) noexcept;
     Renderer& operator=(Renderer&&) noexcept;
 
+    /// Gives the scene other values of its shader's parameters, another turn of the probe and
+    /// another place of the object, without another upload.
+    void change(const Material& material, const Turn& turn, const Placement& placement);
+
     /// Scene-linear pixels: RGBA, premultiplied, when the scene has no background, otherwise RGB.
     /// Throws Error (usage) for a camera below the ground.
     Image render(const Camera& camera);
 
     /// What became of the lights in the picture drawn last.
     LightCounts lightCounts() const;
+
+    FrameAovs renderAovs(const Camera& camera);
 
 private:
     struct State;

@@ -6,6 +6,7 @@
 #include "panorama/panorama.h"
 #include "render/material.h"
 #include "render/mesh.h"
+#include "render/placement.h"
 
 #include <optional>
 #include <variant>
@@ -50,10 +51,15 @@ struct Scene {
     Background background;
     std::vector<SceneLight> lights; ///< of lit materials and of the ground
     std::optional<Ground> ground;
+    Turn turn; ///< of the probe, with all maps made of it
+    Placement placement;
 };
 
 /// Whether the scene needs the probe's radiance, and its diffuse map, to be drawn.
 bool needsProbe(const Material& material, const Background& background);
 bool needsDiffuse(const Material& material);
+
+/// The least y of an object that is placed so.
+double lowestPoint(const Object& object, const Placement& placement);
 
 } // namespace ibl

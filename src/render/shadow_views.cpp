@@ -117,12 +117,12 @@ ShadowView fittedPerspective(const V3d& eye, const Caster& caster, int size) {
 
 } // namespace
 
-Caster casterOf(const Mesh& mesh) {
+Caster casterOf(std::span<const V3f> points) {
     Box3f box;
-    for (const V3f& p : mesh.positions)
+    for (const V3f& p : points)
         box.extendBy(p);
-    Caster caster{V3d(box.center()), 0, mesh.positions};
-    for (const V3f& p : mesh.positions)
+    Caster caster{V3d(box.center()), 0, points};
+    for (const V3f& p : points)
         caster.radius = std::max(caster.radius, (V3d(p) - caster.centre).length2());
     caster.radius = std::max(std::sqrt(caster.radius) * (1 + 1e-6), 1e-30);
     return caster;

@@ -21,8 +21,8 @@ struct Caster {
     std::span<const V3f> points;
 };
 
-/// That of a mesh, which must outlive it.
-Caster casterOf(const Mesh& mesh);
+/// That of points, which must outlive it.
+Caster casterOf(std::span<const V3f> points);
 
 /// One shadow map: row vectors p M, as Imath multiplies. All of the caster lies within its edges,
 /// two texels and more away from them, and within its depth.

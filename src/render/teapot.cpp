@@ -127,6 +127,7 @@ void addPatch(Mesh& mesh, const Patch& patch) {
             const V3d p = evaluate(patch, s, t).position, n = normalAt(patch, s, t);
             mesh.positions.emplace_back(V3d(p.x, p.z, -p.y)); // Z up to Y up
             mesh.normals.emplace_back(V3d(n.x, n.z, -n.y));
+            mesh.texcoords.emplace_back(Imath::V2d(t, 1 - s)); // outside is along_j x along_i
         }
     }
     const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {

@@ -27,8 +27,14 @@ inline void setUniform(const Program& p, const char* name, int v) {
 inline void setUniform(const Program& p, const char* name, double v) {
     glProgramUniform1f(p.id(), glGetUniformLocation(p.id(), name), static_cast<float>(v));
 }
-inline void setUniform(const Program& p, const char* name, const Imath::M44f& m) {
-    glProgramUniformMatrix4fv(p.id(), glGetUniformLocation(p.id(), name), 1, GL_FALSE, m[0]);
+/// Matrices multiply row vectors, as Imath has them, and column vectors in the shader.
+inline void setUniform(const Program& p, const char* name, const Imath::M44d& m) {
+    const Imath::M44f f(m);
+    glProgramUniformMatrix4fv(p.id(), glGetUniformLocation(p.id(), name), 1, GL_FALSE, f[0]);
+}
+inline void setUniform(const Program& p, const char* name, const Imath::M33d& m) {
+    const Imath::M33f f(m);
+    glProgramUniformMatrix3fv(p.id(), glGetUniformLocation(p.id(), name), 1, GL_FALSE, f[0]);
 }
 inline void setUniform(const Program& p, const char* name, std::span<const float> v) {
     glProgramUniform1fv(p.id(), glGetUniformLocation(p.id(), name), static_cast<GLsizei>(v.size()),

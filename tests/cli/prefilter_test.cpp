@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <map>
 
 namespace ibl {
@@ -108,6 +109,21 @@ TEST(Specular, FurnaceIsItselfForEveryLobe) {
     for (const char* roughness : {"0.05", "0.5", "1"})
         furnace({"--kernel", "charlie", "--roughness", roughness});
     furnace({"--kernel", "lambert"});
+}
+
+TEST(Specular, WhatHalfCannotHoldIsClippedAndCounted) {
+    const Scratch scratch;
+    // 244 * 2^(148 - 136), about 1e6, in each of 4 x 2 pixels.
+    std::string radiance = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 4\n";
+    for (int pixel = 0; pixel < 8; ++pixel)
+        radiance += "\xf4\xf4\xf4\x94";
+    std::ofstream(scratch / "bright.hdr", std::ios::binary) << radiance;
+    const ToolResult result = runTool({"specular", "bright.hdr", "--roughness", "0.5", "--to",
+                                       "strip", "--size", "4", "--type", "half", "-o", "h.exr"},
+                                      scratch.path());
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    expectConstant(scratch / "h.exr", 65504, 0);
+    EXPECT_NE(result.err.find("288 "), std::string::npos) << result.err; // 96 texels, 3 values each
 }
 
 TEST(Specular, RoughnessZeroIsConvert) {

@@ -7,7 +7,9 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 namespace ibl {
 namespace {
@@ -70,7 +72,8 @@ TEST(Render, MirrorAndBackgroundAreTheProbeLookedUp) {
 
 TEST(Render, FurnaceIsOneForEveryShaderAndObject) {
     const Scratch scratch;
-    for (const char* object : {"sphere", "cube", "torus", "teapot", "dodecahedron"}) {
+    for (const char* object :
+         {"sphere", "cube", "torus", "teapot", "dodecahedron", "cone", "plane"}) {
         for (const char* shader : {"mirror", "diffuse", "mirror-diffuse"}) {
             const Image frame =
                 render(scratch, {"--probe", "builtin:furnace", "--object", object, "--shader",
@@ -158,8 +161,8 @@ TEST(Render, Refusals) {
     refused({"--object", "missing.obj"}, 2, "missing.obj");
     refused({"--shader", "wood"}, 1, "--shader");
     refused({"--tonemap", "magic"}, 1, "--tonemap");
-    refused({"--fov", "0"}, 1, "field of view");
-    refused({"--fov", "180"}, 1, "field of view");
+    refused({"--fov", "0"}, 1, "--fov");
+    refused({"--fov", "180"}, 1, "--fov");
     refused({"--fov", "nan"}, 1, "");
     refused({"--eye", "0,0,0"}, 1, "");
     refused({"--eye", "0,4,0"}, 1, "up");
@@ -171,6 +174,151 @@ TEST(Render, Refusals) {
     writeFile(scratch / "bad.obj", "v 1 2 three\nf 1 2 9\n");
     refused({"--object", "bad.obj"}, 2, "bad.obj");
     EXPECT_EQ(scratch.names(), (Words{"bad.obj"}));
+}
+
+TEST(Render, FramesAreTheBytesOfSeparateRuns) {
+    const Scratch scratch;
+    const Words shared{"render",         "--probe", "builtin:sky", "--object",  "cube", "--shader",
+                       "mirror-diffuse", "--size",  "40x30",       "--samples", "2"};
+    const auto run = [&](const Words& more) {
+        Words words = shared;
+        words.insert(words.end(), more.begin(), more.end());
+        const ToolResult result = runTool(words, scratch.path());
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+    };
+    for (const char* threads : {"1", "5"}) {
+        run({"--frames",       "7-10",      "--azimuth",  "0..90",       "--yaw",
+             "30..-60",        "--rotate",  "0,10..40,0", "--translate", "0,0,0..0.75",
+             "--reflectivity", "0.25..1",   "--threads",  threads,       "--report",
+             "r.json",         "--depfile", "d",          "-o",          "f.%03d.png"});
+        for (int k = 0; k < 4; ++k) {
+            const auto number = [](double v) { return std::to_string(v); };
+            run({"--azimuth", number(30 * k), "--yaw", number(30 - 30 * k), "--rotate",
+                 "0," + number(10 + 10 * k) + ",0", "--translate", "0,0," + number(0.25 * k),
+                 "--reflectivity", number(0.25 + 0.25 * k), "-o", "one.png"});
+            char name[16];
+            std::snprintf(name, sizeof name, "f.%03d.png", 7 + k);
+            EXPECT_TRUE(readFile(scratch / name) == readFile(scratch / "one.png")) << name;
+        }
+        EXPECT_FALSE(readFile(scratch / "f.007.png") == readFile(scratch / "f.008.png"));
+    }
+    EXPECT_EQ(readFile(scratch / "d"), "f.007.png f.008.png f.009.png f.010.png:\n");
+    const auto report = nlohmann::json::parse(readFile(scratch / "r.json"));
+    ASSERT_EQ(report["results"]["frames"].size(), 4u);
+    EXPECT_EQ(report["results"]["frames"][3]["frame"], 10);
+}
+
+TEST(Render, FramesAdaptAsRunsThatHandTheirStateOn) {
+    const Scratch scratch;
+    const auto run = [&](Words words) {
+        words.insert(words.begin(), {"render", "--size", "24x16", "--samples", "1", "--exposure",
+                                     "auto", "--adapt", "2", "--distance", "3"});
+        const ToolResult result = runTool(words, scratch.path());
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+    };
+    // Probes of the frame's name: from dark to bright.
+    render(scratch, {"--probe", "builtin:furnace", "--exposure", "-6", "--size", "16x8"}, "p1.exr");
+    render(scratch, {"--probe", "builtin:furnace", "--exposure", "4", "--size", "16x8"}, "p2.exr");
+    render(scratch, {"--probe", "builtin:furnace", "--exposure", "4", "--size", "16x8"}, "p3.exr");
+    run({"--probe", "p%d.exr", "--frames", "1-3", "-o", "f%d.exr"});
+    for (const char* k : {"1", "2", "3"}) {
+        run({"--probe", std::string("p") + k + ".exr", "--adapt-state", "s.json", "-o", "one.exr"});
+        EXPECT_TRUE(readFile(scratch / (std::string("f") + k + ".exr")) ==
+                    readFile(scratch / "one.exr"))
+            << k;
+    }
+}
+
+TEST(Render, FramesBeforeAFailureStay) {
+    const Scratch scratch;
+    writeFile(scratch / "t1.obj", "v -1 -1 0\nv 1 -1 0\nv 0 1 0\nf 1 2 3\n");
+    writeFile(scratch / "t3.obj", "f 1 2 3\n");
+    std::filesystem::copy_file(scratch / "t1.obj", scratch / "t2.obj");
+    expectRefused(
+        runTool({"render", "--probe", "builtin:furnace", "--object", "t%d.obj", "--frames", "1-4",
+                 "--size", "16x16", "-o", "f%d.png", "--report", "r.json"},
+                scratch.path()),
+        2, "t3.obj");
+    EXPECT_EQ(scratch.names(), (Words{"f1.png", "f2.png", "t1.obj", "t2.obj", "t3.obj"}));
+}
+
+TEST(Render, FocalLengthIsOfTheSensorsWidth) {
+    const Scratch scratch;
+    // A 36 mm wide sensor behind 18 mm sees 90 degrees across; at 2:1, 2 atan(1/2) upwards.
+    const Words words{"--probe", "builtin:sky", "--size", "64x32", "--samples", "1"};
+    Words focal = words, fov = words;
+    focal.insert(focal.end(), {"--focal-length", "18"});
+    fov.insert(fov.end(), {"--fov", "53.13010235415598"});
+    const Image a = render(scratch, focal), b = render(scratch, fov);
+    for (std::size_t i = 0; i < a.pixels.size(); ++i)
+        ASSERT_NEAR(a.pixels[i], b.pixels[i], 1e-3 * (1 + b.pixels[i]));
+}
+
+TEST(Render, BaseTextureOfIntegersIsDecoded) {
+    const Scratch scratch;
+    // All linear 0.5: a background, and a camera that sees nothing else.
+    render(scratch,
+           {"--probe", "builtin:furnace", "--background", "0.5,0.5,0.5", "--eye", "0,0,9",
+            "--target", "0,0,18", "--size", "16x8"},
+           "grey.png");
+    for (const char* object : {"sphere", "cube", "cylinder", "torus", "teapot", "plane"}) {
+        const Image frame =
+            render(scratch, {"--probe", "builtin:furnace", "--base-texture", "grey.png", "--object",
+                             object, "--elevation", "30", "--background", "0,0,0", "--size",
+                             "32x32", "--samples", "1"});
+        float largest = 0;
+        for (const float v : frame.pixels)
+            largest = std::max(largest, v);
+        EXPECT_NEAR(largest, 0.5, 0.005) << object;
+    }
+}
+
+TEST(Render, AovsAreLayersOfTheExr) {
+    const Scratch scratch;
+    render(scratch, {"--probe", "builtin:furnace", "--size", "17x17", "--type", "half", "--aov",
+                     "normal,depth,id"});
+    const ToolResult info = runProgram({"oiiotool", "--info", "-v", "o.exr"}, scratch.path());
+    for (const char* name :
+         {"R (half)", "normal.X (float)", "normal.Z (float)", "depth.Z (float)", "id (float)"}) {
+        EXPECT_NE(info.out.find(name), std::string::npos) << info.out;
+    }
+    const auto centre = [&](const std::string& channel) {
+        const ToolResult cut =
+            runProgram({"oiiotool", "o.exr", "--ch", channel, "--cut", "1x1+8+8", "--printstats"},
+                       scratch.path());
+        return cut.out;
+    };
+    EXPECT_NE(centre("depth.Z").find("Avg: 3.0"), std::string::npos) << centre("depth.Z");
+    EXPECT_NE(centre("normal.Z").find("Avg: 1.0"), std::string::npos) << centre("normal.Z");
+}
+
+TEST(Render, FrameAndDeviceRefusals) {
+    const Scratch scratch;
+    const auto refused = [&](Words words, int code, const std::string& said) {
+        words.insert(words.begin(), {"render", "--probe", "builtin:furnace", "--size", "8x8"});
+        expectRefused(runTool(words, scratch.path()), code, said);
+    };
+    refused({"--azimuth", "0..90", "-o", "o.png"}, 1, "--frames");
+    refused({"--frames", "1-3", "-o", "o.png"}, 1, "%04d");
+    refused({"-o", "o.%04d.png"}, 1, "--frames");
+    for (const char* range : {"3", "3-1", "-1-3", "a-b", "1-2-3", "1-99999999999"})
+        refused({"--frames", range, "-o", "o%d.png"}, 1, "--frames");
+    for (const char* ramp : {"0..", "..9", "0..nan", "1..2..3", "x"})
+        refused({"--frames", "1-2", "--yaw", ramp, "-o", "o%d.png"}, 1, "--yaw");
+    refused({"--frames", "1-2", "--elevation", "0..91", "-o", "o%d.png"}, 1, "--elevation");
+    refused({"--rotate", "1,2", "-o", "o.png"}, 1, "--rotate");
+    refused({"--scale", "0", "-o", "o.png"}, 1, "--scale");
+    refused({"--focal-length", "50", "--fov", "40", "-o", "o.png"}, 1, "--fov");
+    refused({"--sensor", "24", "-o", "o.png"}, 1, "--focal-length");
+    refused({"--camera", "0", "-o", "o.png"}, 1, "--camera");
+    refused({"--camera", "0", "--eye", "1,2,3", "-o", "o.png"}, 1, "--camera");
+    refused({"--aov", "depth", "-o", "o.png"}, 1, "--aov");
+    refused({"--aov", "beauty", "-o", "o.exr"}, 1, "--aov");
+    refused({"--base-texture", "none.png", "-o", "o.png"}, 2, "none.png");
+    refused({"--device", "gpu", "-o", "o.png"}, 1, "--device");
+    refused({"--device", "63", "-o", "o.png"}, 3, "there are 0 (");
+    refused({"--exposure", "auto", "--adapt", "2", "-o", "o.png"}, 1, "--adapt-state");
+    EXPECT_TRUE(scratch.names().empty());
 }
 
 TEST(Render, NoDeviceIsExitThreeAndNamesThePackages) {

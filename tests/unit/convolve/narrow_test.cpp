@@ -61,10 +61,10 @@ TEST(Direct, SumIsTheLobesMean) {
     for (const double r : {0.05, 1.0})
         cases.push_back({{Kernel::charlie, r}, oracle::charlie(r), 0.1});
     for (const NarrowCase& c : cases) {
-        const DirectLobe direct = makeDirectLobe(c.lobe);
+        const DirectSum direct = makeDirectSum(c.lobe, probe, 1);
         for (const auto& [u, v] : kPlaces) {
             double value[3] = {};
-            addDirect(direct, probe, 1, makeAxis(u, v), value);
+            addDirect(direct, makeAxis(u, v), value);
             const auto expected =
                 oracle::convolveNarrow(probe, c.function, c.width, directionAt(u, v));
             for (int ch = 0; ch < 3; ++ch) {
@@ -80,7 +80,7 @@ TEST(Direct, SumIsTheLobesMean) {
 /// itself is taken at the points, and the mean of that is the area filter's.
 V3d footprintMean(const Image& probe, const Image& area, const Lobe& lobe, int face, int x, int y,
                   int edge, int n) {
-    const DirectLobe direct = makeDirectLobe(lobe);
+    const DirectSum direct = makeDirectSum(lobe, probe, 1);
     const bool steps = lobeWidth(lobe) < 0.5 * kPi / edge / n;
     V3d mean(0);
     double total = 0;
@@ -89,7 +89,7 @@ V3d footprintMean(const Image& probe, const Image& area, const Lobe& lobe, int f
         const oracle::Direction d = oracle::cubeDirection(face, i, j, edge);
         const V2d at = latlongPoint({d.x, d.y, d.z});
         double value[3] = {};
-        addDirect(direct, probe, 1, makeAxis(at.x, at.y), value);
+        addDirect(direct, makeAxis(at.x, at.y), value);
         const double w = oracle::cubeWeight(i, j, edge);
         V3d point(value[0], value[1], value[2]);
         if (steps) {

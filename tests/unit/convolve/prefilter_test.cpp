@@ -231,6 +231,44 @@ TEST(Prefilter, LoneSunIsTheKernelItself) {
     }
 }
 
+TEST(Prefilter, ScaleOfTheSunDoesNotMatterToAnyKernel) {
+    // A result in proportion to its probe, from the least sun to the largest float.
+    for (const Lobe& lobe : kWideLobes) {
+        for (const auto& [i, j] : {std::pair{0, 0}, {47, 10}, {6, 12}}) {
+            Image probe = constant(48, 24, 0);
+            const auto under = [&](float sun) {
+                std::ranges::fill_n(probe.at(i, j), 3, sun);
+                return filter(probe, lobe, Layout::faces, 8).map.image;
+            };
+            const Image unit = under(1);
+            const float brightest = *std::ranges::max_element(unit.pixels);
+            ASSERT_GT(brightest, 0);
+            for (const float sun : {1e-30f, 65504.0f, 1e9f, std::numeric_limits<float>::max()}) {
+                const Image map = under(sun);
+                for (std::size_t t = 0; t < unit.pixels.size(); ++t) {
+                    ASSERT_TRUE(std::isfinite(map.pixels[t]) && map.pixels[t] >= 0) << sun;
+                    ASSERT_NEAR(map.pixels[t] / sun, unit.pixels[t], 1e-6 * brightest)
+                        << sun << " kernel " << int(lobe.kernel);
+                }
+            }
+        }
+    }
+}
+
+TEST(Prefilter, SizesFrom1To4096) {
+    const Image probe = scene(16, 8);
+    const Image fine = divided(probe, 3);
+    const Lobe lobe{Kernel::lambert, 0};
+    for (const int size : {2, 3, 7, 31, 256}) {
+        const PrefilterResult result = filter(probe, lobe, Layout::faces, size);
+        EXPECT_LE(compare(result, fine, lobe, 12).rmse, 1e-4) << size;
+    }
+    // The layout with the fewest texels at that size.
+    const PrefilterResult largest = filter(probe, lobe, Layout::octahedral, 4096);
+    EXPECT_EQ(largest.map.image.width, 4096);
+    EXPECT_LE(compare(largest, fine, lobe, 12).rmse, 1e-4);
+}
+
 TEST(Prefilter, DenormalsAreKept) {
     const PrefilterResult result =
         filter(constant(128, 64, 1e-40f), {Kernel::ggx, 0.3}, Layout::faces, 16);

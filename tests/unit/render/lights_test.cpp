@@ -321,6 +321,31 @@ TEST(Shadows, AlphaCompositesToThePictureBeforeAColour) {
     EXPECT_GT(partial, 100);
 }
 
+// Object, ground and camera brought elsewhere, and the lights turned with the probe as the object
+// is turned, make the same picture.
+TEST(Shadows, GoWithTheObject) {
+    for (const char* name : {"sphere", "torus"}) {
+        Scene scene = litScene({sunlight({1, 1.2, 0.2}, V3d(1)), sunlight({-1, 2, 1}, V3d(0.5))},
+                               builtinObject(name)->mesh);
+        scene.material = Material(Shader::ward);
+        scene.background = ColorBackground(1, 1, 1);
+        scene.ground = Ground{-1.1, std::nullopt};
+        Camera camera = orbitCamera(10, 35, 6, V3d(0), 40);
+        const Image here = draw(scene, camera, 40, 4);
+        const V3d shift(3, 0.5, -2);
+        scene.placement.translate = shift;
+        scene.placement.scale = 2;
+        scene.placement.turn.yaw = scene.turn.yaw = 90;
+        scene.ground->height = -2.2 + shift.y;
+        camera = orbitCamera(100, 35, 12, shift, 40);
+        const Image there = draw(scene, camera, 40, 4);
+        double error = 0;
+        for (std::size_t i = 0; i < here.pixels.size(); ++i)
+            error += std::pow(here.pixels[i] - there.pixels[i], 2);
+        EXPECT_LT(std::sqrt(error / static_cast<double>(here.pixels.size())), 0.01) << name;
+    }
+}
+
 TEST(Lights, BatchesAddUp) {
     std::mt19937 random(5);
     std::normal_distribution<double> normal;
@@ -348,6 +373,7 @@ TEST(Lights, BatchesAddUp) {
 Mesh squareMesh() {
     return {{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}},
             std::vector<V3f>(4, V3f(0, 0, 1)),
+            {},
             {0, 1, 2, 0, 2, 3}};
 }
 
@@ -371,7 +397,7 @@ TEST(Lights, ThoseThatChangeNoPixelAreNotDrawn) {
 
 TEST(Lights, MapsHoldAllOfTheCaster) {
     const Mesh mesh = *builtinObject("teapot")->mesh;
-    const Caster caster = casterOf(mesh);
+    const Caster caster = casterOf(mesh.positions);
     std::mt19937 random(9);
     std::normal_distribution<double> normal;
     for (int i = 0; i < 40; ++i) {

@@ -1,5 +1,5 @@
 #include "core/error.h"
-#include "render/mesh.h"
+#include "render/object_file.h"
 
 #include <gtest/gtest.h>
 
@@ -25,12 +25,12 @@ protected:
         std::ofstream(path) << text;
         return path;
     }
-    Mesh load(const std::string& text) const { return loadObj(write(text)); }
+    Mesh load(const std::string& text) const { return *readObject(write(text)).object.mesh; }
 
     // The message, or nothing when the file was taken.
     std::string refusal(const std::string& path) const {
         try {
-            loadObj(path);
+            readObject(path);
         } catch (const Error& error) {
             EXPECT_EQ(error.code(), ExitCode::input);
             EXPECT_EQ(std::string(error.what()).rfind(path + ": ", 0), 0u) << error.what();
