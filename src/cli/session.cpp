@@ -123,6 +123,7 @@ Panorama Session::readProbe(const ProbeOptions& options) {
 }
 
 void Session::screen(const std::string& subject, const Panorama& panorama) {
+    if (surelyValid(panorama.image, threads())) return;
     const Census census = takeCensus(panorama, threads());
     if (census.nan.count + census.infinite.count > 0) {
         const BadPixels& first = census.nan.count > 0 ? census.nan : census.infinite;
@@ -139,6 +140,7 @@ void Session::screen(const std::string& subject, const Panorama& panorama) {
 }
 
 void Session::mend(const std::string& subject, Panorama& panorama) {
+    if (surelyValid(panorama.image, threads())) return;
     const Census census = takeCensus(panorama, threads());
     if (census.nan.count + census.infinite.count + census.negative.count == 0) return;
     const long mended = stage("repair", [&] { return repair(subject, panorama); });

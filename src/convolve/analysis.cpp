@@ -3,6 +3,7 @@
 #include "convolve/fft.h"
 #include "convolve/theta_resample.h"
 #include "core/parallel.h"
+#include "image/pixel_lanes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,8 +17,6 @@ constexpr double kPi = std::numbers::pi;
 /// Two real rows share a complex transform, so a vector holds twice as many rows as lanes.
 constexpr int kRowsAtOnce = 2 * kLanes;
 
-typedef float Floats __attribute__((vector_size(kLanes * sizeof(float))));
-
 struct RowTask {
     const Image& probe;
     const PrunedFft& plan;
@@ -25,24 +24,6 @@ struct RowTask {
     double scale;
     double threshold;
 };
-
-/// One channel of the pixels i .. i + kLanes - 1 of an RGB row.
-template <int Channel>
-IBL_INLINE Lanes loadPixels(const float* row) {
-    Floats a, b, c;
-    __builtin_memcpy(&a, row, sizeof a);
-    __builtin_memcpy(&b, row + 4, sizeof b);
-    __builtin_memcpy(&c, row + 8, sizeof c);
-    Floats channel;
-    if constexpr (Channel == 0) {
-        channel = __builtin_shufflevector(__builtin_shufflevector(a, b, 0, 3, 6, 6), c, 0, 1, 2, 5);
-    } else if constexpr (Channel == 1) {
-        channel = __builtin_shufflevector(__builtin_shufflevector(a, b, 1, 4, 7, 7), c, 0, 1, 2, 6);
-    } else {
-        channel = __builtin_shufflevector(__builtin_shufflevector(a, b, 2, 5, 5, 5), c, 0, 1, 4, 7);
-    }
-    return __builtin_convertvector(channel, Lanes);
-}
 
 /// Rows `rows` of one channel, scaled and clamped: the first kLanes as real parts, the others as
 /// imaginary parts.

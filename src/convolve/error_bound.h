@@ -10,10 +10,6 @@ namespace ibl {
 /// Relative RMSE that rounding to float leaves in any map.
 inline constexpr double kFloatRounding = 1e-7;
 
-/// Where only an estimate is known, which tests hold within a factor of three, its bound is this
-/// many times as large.
-inline constexpr double kBoundOverEstimate = 3;
-
 /// Sums of w b^2 and w |b| over a map's texels and channels.
 class MapNorm {
 public:

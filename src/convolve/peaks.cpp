@@ -234,14 +234,4 @@ void addPeaks(const PeakSum& sum, const std::vector<double>& u, const std::vecto
     }
 }
 
-Image peakImage(const std::vector<Peak>& peaks, int width, int height) {
-    Image image(width, height);
-    std::ranges::fill(image.pixels, 0.0f);
-    for (const Peak& peak : peaks) {
-        for (int c = 0; c < 3; ++c)
-            image.at(peak.column, peak.row)[c] = static_cast<float>(peak.excess[c]);
-    }
-    return image;
-}
-
 } // namespace ibl

@@ -93,7 +93,4 @@ double peakMass(const PeakSum& sum, std::size_t p, const Axis& axis, const V3d& 
 void addPeaks(const PeakSum& sum, const std::vector<double>& u, const std::vector<double>& v,
               double* values);
 
-/// A black probe of that extent with the peaks alone in it.
-Image peakImage(const std::vector<Peak>& peaks, int width, int height);
-
 } // namespace ibl

@@ -1,14 +1,12 @@
 #include "convolve/plan.h"
 
 #include "convolve/error_bound.h"
-#include "convolve/narrow.h"
 #include "convolve/texels.h"
 #include "core/parallel.h"
 #include "panorama/conventions.h"
 #include "panorama/layouts.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -19,8 +17,8 @@ namespace {
 /// needs more has a horizon, against which only peaks help; a narrow one is worth 3 s of one core.
 constexpr int kMostDegree = 768;
 constexpr int kMostDegreeOfNarrow = 1536;
-/// Degrees that Method::narrow chooses from.
-constexpr std::array kNarrowDegrees{512, 768, 1024, 1536, 2048};
+/// Highest degree of Method::narrow.
+constexpr int kNarrowDegree = 512;
 /// Coefficients known beyond it, from which the tail's envelope is read.
 constexpr int kTailBands = 64;
 
@@ -64,29 +62,6 @@ double costOf(const std::vector<int>& degrees, std::span<const PrefilterRequest>
         most = std::max(most, degrees[i]);
     }
     return cost + Costs::kLegendre * cube(most);
-}
-
-/// Splits off as few peaks as leave a probe whose root mean square is a few times its mean: what
-/// Method::narrow leaves out is in proportion to it.
-double narrowThreshold(const ProbeStatistics& probe) {
-    double mean = 0;
-    for (const double a : probe.absolute)
-        mean += a * a / (4 * kPi);
-    double threshold = 0;
-    for (const int peaks : {0, 1, 4, 16, 64}) {
-        threshold = peakThreshold(probe, peaks);
-        if (clampedEnergy(probe, threshold) <= 9 * mean) break;
-    }
-    return threshold;
-}
-
-/// Least of kNarrowDegrees at which a probe of that energy is likely to keep `allowed`.
-int narrowDegree(const std::vector<double>& k, double energy, double allowed, double footprint) {
-    for (const int degree : kNarrowDegrees) {
-        const Spectrum spectrum = continuedSpectrum({}, energy, degree);
-        if (makeNarrowLobe(k, degree, spectrum, footprint).error <= allowed) return degree;
-    }
-    return kNarrowDegrees.back();
 }
 
 } // namespace
@@ -136,7 +111,6 @@ double allowedNorm(const ProbeStatistics& probe, const PrefilterRequest& request
 Plan makePlan(const ProbeStatistics& probe, std::span<const PrefilterRequest> requests,
               double max_error, int probe_width, int threads) {
     Plan plan;
-    plan.narrow_threshold = narrowThreshold(probe);
     plan.lobes.resize(requests.size());
     std::vector<double> allowed(requests.size());
     parallelFor(requests.size(), threads, [&](std::size_t i) {
@@ -175,11 +149,9 @@ Plan makePlan(const ProbeStatistics& probe, std::span<const PrefilterRequest> re
         lobe.degree = std::min(chosen[i], mostDegree(requests[i].lobe));
         if (chosen[i] < 0) {
             lobe.method = Method::narrow;
-            lobe.k = zonalCoefficients(requests[i].lobe, 2 * kNarrowDegrees.back() + 1);
-            lobe.degree = narrowDegree(
-                lobe.k, clampedEnergy(probe, plan.narrow_threshold), allowed[i],
-                footprintOf(requests[i].lobe, texelAngle(requests[i]), kAnyDegree).scale *
-                    texelAngle(requests[i]));
+            lobe.degree = kNarrowDegree;
+            lobe.k.resize(static_cast<std::size_t>(lobe.degree + kTailBands));
+            lobe.allowed = allowed[i] / std::sqrt(std::max(probe.energy, 1e-300));
         } else {
             plan.degree = std::max(plan.degree, lobe.degree);
         }

@@ -22,20 +22,20 @@ namespace ibl {
 enum class Method {
     area,      ///< mirrors: the area-filtered probe
     harmonics, ///< a band limit, and the peaks directly
-    narrow,    ///< harmonics as far as they go, the area-filtered probe beyond (narrow.h)
+    narrow,    ///< the lobe's tail in harmonics, its core in space (narrow.h)
 };
 
 struct LobePlan {
     Method method = Method::harmonics;
     int degree = 0;
-    std::vector<double> k; ///< coefficients; more than `degree` of them for Method::harmonics
+    std::vector<double> k; ///< coefficients, more than `degree` of them
+    double allowed = 0;    ///< for Method::narrow: the largest coefficient that may be left out
 };
 
 struct Plan {
     double threshold = 0; ///< for the analysis that Method::harmonics uses
     int peaks = 0;
-    int degree = 0;              ///< of that analysis
-    double narrow_threshold = 0; ///< for the analysis that Method::narrow uses
+    int degree = 0; ///< of that analysis
     std::vector<LobePlan> lobes;
 };
 

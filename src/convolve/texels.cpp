@@ -97,15 +97,20 @@ double texelCount(const PrefilterRequest& request) {
     return cube ? 6 * n * n : 2 * n * n;
 }
 
-std::array<V3d, 4> texelCorners(Layout layout, int width, int height, int x, int y, double scale) {
-    std::array<V3d, 4> corners;
-    for (int i = 0; i < 4; ++i) {
-        const double dx = i == 1 || i == 2 ? 0.5 : -0.5, dy = i >= 2 ? 0.5 : -0.5;
-        const V3d d = directionIn(layout, width, height, {x + 0.5, y + 0.5}, V2d(dx, dy) * scale);
-        const V2d p = latlongPoint(d);
-        corners[static_cast<std::size_t>(i)] = polarDirection(kPi * p.y, 2 * kPi * p.x);
-    }
-    return corners;
+V3d texelPlace(const MapExtent& map, int x, int y, V2d offset) {
+    // A face's edge in the image is as well the next one's.
+    constexpr double kWithin = 1 - 1e-10;
+    const V3d d =
+        directionIn(map.layout, map.width, map.height, {x + 0.5, y + 0.5}, offset * kWithin);
+    return {-d.z, d.x, d.y};
+}
+
+RowPoints texelPoints(const MapExtent& map, int x, int y, const Footprint& footprint) {
+    RowPoints points;
+    const V3d centre = directionIn(map.layout, map.width, map.height, {x + 0.5, y + 0.5}, V2d(0));
+    addTexel(map.layout, map.width, map.height, x, y, centre, footprint.scale,
+             footprintRule(footprint.samples), points);
+    return points;
 }
 
 RowPoints rowPoints(Layout layout, int width, int height, int y, const Footprint& footprint) {

@@ -42,11 +42,22 @@ struct RowPoints {
     std::vector<double> share; ///< of each point in its texel's mean; they sum to 1
 };
 
-/// Corners of the texel shrunk to `scale` of its extent about its centre, as polar directions
-/// (peaks.h), in order around.
-std::array<V3d, 4> texelCorners(Layout layout, int width, int height, int x, int y, double scale);
-
 /// Row y of a map of that layout and extent.
 RowPoints rowPoints(Layout layout, int width, int height, int y, const Footprint& footprint);
+
+/// A map's image.
+struct MapExtent {
+    Layout layout;
+    int width;
+    int height;
+    double texel; ///< texelAngle
+};
+
+/// Polar direction (peaks.h) of a place in texel (x, y), `offset` texels from its centre; drawn
+/// towards the centre where it lies outside a ball map's disc.
+V3d texelPlace(const MapExtent& map, int x, int y, V2d offset);
+
+/// The points of one texel.
+RowPoints texelPoints(const MapExtent& map, int x, int y, const Footprint& footprint);
 
 } // namespace ibl

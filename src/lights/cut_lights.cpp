@@ -35,12 +35,40 @@ LitTree withLit(CutTree&& tree, const Table& table) {
     return result;
 }
 
-LitTree cutProbe(const Image& latlong, LightMethod method, int count, int threads) {
-    if (method == LightMethod::variance) {
-        const MomentTable table(latlong, threads);
-        return withLit(varianceCut(table, count), table);
+int litCount(const LitTree& cuts) {
+    const std::vector<int> leaves = leavesOf(cuts.tree, cuts.tree.cut.size());
+    return static_cast<int>(std::count_if(leaves.begin(), leaves.end(), [&](int node) {
+        return cuts.is_lit[static_cast<std::size_t>(node)];
+    }));
+}
+
+/// Blocks of pixels for the variance cut, as a shift: no more of them than half a million or 32 a
+/// light, so that the table does not take longer to fill than a large probe to read.
+int blockShift(const Image& latlong, int count) {
+    const long most = std::max(1L << 19, 32L * count);
+    int shift = 0;
+    while ((long{latlong.width} >> shift) * (latlong.height >> shift) > most)
+        ++shift;
+    return shift;
+}
+
+LitTree varianceCuts(const Image& latlong, double absolute_energy, int count, int threads) {
+    for (int shift = blockShift(latlong, count);; shift = 0) {
+        const MomentTable table(latlong, absolute_energy, shift, threads);
+        LitTree cuts = withLit(varianceCut(table, count), table);
+        // Few lit blocks may be many lit pixels.
+        if (shift > 0 && litCount(cuts) < count) continue;
+        for (PixelRegion& node : cuts.tree.nodes)
+            node = table.pixels(node);
+        return cuts;
     }
-    const SummedAreaTable table(latlong, threads);
+}
+
+LitTree cutProbe(const Image& latlong, const LuminousEnergy& energy, LightMethod method, int count,
+                 int threads) {
+    if (method == LightMethod::variance)
+        return varianceCuts(latlong, energy.absolute, count, threads);
+    const SummedAreaTable table(latlong, energy.lit, threads);
     return withLit(medianCut(table, count), table);
 }
 
@@ -122,35 +150,34 @@ std::optional<LightSet> firstWithin(const Search& s) {
 
 LightSet fewestLights(const Image& latlong, const LightRequest& request, int threads) {
     for (int most = 64;; most = std::min(kMostLights, 8 * most)) {
-        const LitTree cuts = cutProbe(latlong, request.method, most, threads);
-        if (!cuts.is_lit[0]) return {};
+        const auto [probe, energy] = sumProbe(latlong, harmonicDegree(most), threads);
+        if (energy.lit <= 0) return {};
+        const LitTree cuts = cutProbe(latlong, energy, request.method, most, threads);
         const std::vector<RegionSums> sums = allSums(latlong, cuts.tree, threads);
-        const LightHarmonics probe = probeHarmonics(latlong, harmonicDegree(most), threads);
         if (auto set = firstWithin({latlong, request, cuts, sums, probe, threads})) return *set;
-        const auto lit = [&] {
-            const std::vector<int> leaves = leavesOf(cuts.tree, cuts.tree.cut.size());
-            return std::count_if(leaves.begin(), leaves.end(), [&](int node) {
-                return cuts.is_lit[static_cast<std::size_t>(node)];
-            });
-        };
-        if (most == kMostLights || lit() < most) {
+        if (most == kMostLights || litCount(cuts) < most) {
             const double best =
                 errorOf(lightsAfter(cuts, sums, cuts.tree.cut.size(), latlong, request.placement),
                         probe, threads);
             char text[160];
             std::snprintf(text, sizeof text,
                           "--max-error %g cannot be met: %d lights have %.2g; ask for more",
-                          *request.max_error, static_cast<int>(lit()), best);
+                          *request.max_error, litCount(cuts), best);
             throw Error(ExitCode::accuracy, text);
         }
     }
 }
 
-LightSet byImportance(const Image& latlong, int count, int threads) {
-    const SummedAreaTable table(latlong, threads);
-    LightSet set;
-    set.lights = importanceLights(latlong, table, count, threads);
-    return set;
+std::vector<Light> lightsFor(const Image& latlong, const LightRequest& request,
+                             const LuminousEnergy& energy, int threads) {
+    if (energy.lit <= 0) return {};
+    if (request.method == LightMethod::importance) {
+        const SummedAreaTable table(latlong, energy.lit, threads);
+        return importanceLights(latlong, table, request.count, threads);
+    }
+    const LitTree cuts = cutProbe(latlong, energy, request.method, request.count, threads);
+    const std::vector<RegionSums> sums = allSums(latlong, cuts.tree, threads);
+    return lightsAfter(cuts, sums, cuts.tree.cut.size(), latlong, request.placement);
 }
 
 /// The lights that the regions of the frame before have now, or none when they leave a part of the
@@ -167,7 +194,7 @@ std::optional<std::vector<Light>> inPreviousRegions(const Image& latlong,
     std::vector<bool> is_lit;
     for (const RegionSums& s : sums) {
         solid_angle += s.solid_angle;
-        is_lit.push_back(s.energy > 0);
+        is_lit.push_back(s.energy > 0 || s.irradiance != V3d(0));
     }
     if (std::abs(solid_angle - 4 * kPi) > 1e-9) return std::nullopt;
     return lightsOf(sums, regions, is_lit, latlong.width, latlong.height, request.placement);
@@ -192,15 +219,8 @@ LightSet cutLights(const Image& latlong, const LightRequest& request, int thread
     if (request.max_error) {
         set = fewestLights(latlong, request, threads);
     } else {
-        if (request.method == LightMethod::importance) {
-            set = byImportance(latlong, request.count, threads);
-        } else {
-            const LitTree cuts = cutProbe(latlong, request.method, request.count, threads);
-            const std::vector<RegionSums> sums = allSums(latlong, cuts.tree, threads);
-            set.lights = lightsAfter(cuts, sums, cuts.tree.cut.size(), latlong, request.placement);
-        }
-        const LightHarmonics probe =
-            probeHarmonics(latlong, harmonicDegree(request.count), threads);
+        const auto [probe, energy] = sumProbe(latlong, harmonicDegree(request.count), threads);
+        set.lights = lightsFor(latlong, request, energy, threads);
         set.irradiance_error = errorOf(set.lights, probe, threads);
         const bool same_count =
             request.previous && request.previous->lights.size() == set.lights.size();
@@ -220,9 +240,9 @@ LightSet cutLights(const Image& latlong, const LightRequest& request, int thread
 
 double lampError(const Image& probe, const Image& residual, const Light& lamp, int threads) {
     const int degree = harmonicDegree(1);
-    const LightHarmonics whole = probeHarmonics(probe, degree, threads);
+    const LightHarmonics whole = sumProbe(probe, degree, threads).harmonics;
     LightHarmonics difference = whole;
-    difference -= probeHarmonics(residual, degree, threads);
+    difference -= sumProbe(residual, degree, threads).harmonics;
     difference -= lightHarmonics({lamp}, degree, threads);
     return irradianceError(whole, difference);
 }

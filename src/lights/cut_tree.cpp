@@ -1,42 +1,10 @@
 #include "lights/cut_tree.h"
 
-#include "core/parallel.h"
-#include "lights/pixel_moments.h"
-
 #include <algorithm>
 #include <cmath>
 
 namespace ibl {
 namespace {
-
-RegionSums sumsOf(const Image& latlong, const ColumnMoments& columns, const PixelRegion& r) {
-    const int width = latlong.width, height = latlong.height;
-    RegionSums sums;
-    for (int j = r.y; j < r.y + r.height; ++j) {
-        const RowMoments row = rowMoments(width, height, j);
-        double red = 0, green = 0, blue = 0, luminance_sum = 0, along_x = 0, along_z = 0;
-        const auto addColumns = [&](int begin, int end) {
-            const float* rgb = latlong.at(begin, j);
-            for (int i = begin; i < end; ++i, rgb += 3) {
-                red += rgb[0];
-                green += rgb[1];
-                blue += rgb[2];
-                const double luminance = litLuminance(rgb);
-                luminance_sum += luminance;
-                along_x += luminance * columns.sine[static_cast<std::size_t>(i)];
-                along_z += luminance * columns.cosine[static_cast<std::size_t>(i)];
-            }
-        };
-        addColumns(r.x, std::min(width, r.x + r.width));
-        addColumns(0, std::max(0, r.x + r.width - width));
-        sums.irradiance += V3d(red, green, blue) * row.solid_angle;
-        sums.moment +=
-            V3d(along_x * row.horizontal, luminance_sum * row.vertical, along_z * row.horizontal);
-        sums.energy += luminance_sum * row.solid_angle;
-        sums.solid_angle += row.solid_angle * r.width;
-    }
-    return sums;
-}
 
 V3d middleOf(const AngularRegion& r) {
     const double phi = 0.5 * (r.longitude[0] + r.longitude[1]) * kPi / 180;
@@ -45,14 +13,6 @@ V3d middleOf(const AngularRegion& r) {
 }
 
 } // namespace
-
-RegionSums& RegionSums::operator+=(const RegionSums& other) {
-    irradiance += other.irradiance;
-    moment += other.moment;
-    energy += other.energy;
-    solid_angle += other.solid_angle;
-    return *this;
-}
 
 std::vector<int> leavesOf(const CutTree& tree, std::size_t cuts) {
     std::vector<bool> is_cut(1 + 2 * cuts, false);
@@ -63,15 +23,6 @@ std::vector<int> leavesOf(const CutTree& tree, std::size_t cuts) {
         if (!is_cut[node]) leaves.push_back(static_cast<int>(node));
     }
     return leaves;
-}
-
-std::vector<RegionSums> regionSums(const Image& latlong, const std::vector<PixelRegion>& regions,
-                                   int threads) {
-    const ColumnMoments columns = columnMoments(latlong.width);
-    std::vector<RegionSums> sums(regions.size());
-    parallelFor(sums.size(), threads,
-                [&](std::size_t i) { sums[i] = sumsOf(latlong, columns, regions[i]); });
-    return sums;
 }
 
 AngularRegion angularRegion(const PixelRegion& r, int width, int height) {

@@ -1,25 +1,18 @@
 #include "lights/light_files.h"
 
 #include "lights/lights_json.h"
+#include "lights/number_text.h"
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 
 namespace ibl {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// The shortest text that reads back as the same double, whatever the locale.
-std::string text(double value) {
-    std::array<char, 32> buffer;
-    const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
-    return {buffer.data(), end};
-}
 
 /// Text that may stand in a comment or a quoted string: no line breaks, quotes or backslashes.
 std::string plain(std::string words) {
@@ -62,7 +55,7 @@ std::optional<LightFormat> lightFormat(std::string_view name) {
 std::string lightsCsv(const LightSet& set) {
     std::string csv = "# source: " + plain(set.source) + "\n# method: " + set.method +
                       "\n# axes: " + kLightAxes + "\n# irradiance: " + kLightUnits +
-                      "\n# irradiance_error: " + text(set.irradiance_error) +
+                      "\n# irradiance_error: " + shortestNumber(set.irradiance_error) +
                       "\nid,x,y,z,red,green,blue,solid_angle,share,angular_radius\n";
     const V3d total = totalIrradiance(set.lights);
     for (const Light& light : set.lights) {
@@ -70,10 +63,10 @@ std::string lightsCsv(const LightSet& set) {
         for (const double value : {light.direction.x, light.direction.y, light.direction.z,
                                    light.irradiance.x, light.irradiance.y, light.irradiance.z,
                                    light.solid_angle, energyShare(light, total)}) {
-            csv.append(1, ',').append(text(value));
+            csv.append(1, ',').append(shortestNumber(value));
         }
         csv += ',';
-        if (light.angular_radius) csv += text(*light.angular_radius);
+        if (light.angular_radius) csv += shortestNumber(*light.angular_radius);
         csv += "\n";
     }
     return csv;
@@ -128,7 +121,8 @@ std::string lightsUsda(const LightSet& set) {
         "#usda 1.0\n(\n    defaultPrim = \"Lights\"\n    doc = \"Lights of " + plain(set.source) +
         " by ibltool, " + set.method +
         ". Intensity times colour is irradiance in the probe's units: " + kLightUnits +
-        ". Relative RMSE of the irradiance over all normals: " + text(set.irradiance_error) +
+        ". Relative RMSE of the irradiance over all normals: " +
+        shortestNumber(set.irradiance_error) +
         ".\"\n    upAxis = \"Y\"\n)\n\ndef Xform \"Lights\"\n{\n";
     const V3d total = totalIrradiance(set.lights);
     for (const Light& light : set.lights) {
@@ -137,16 +131,17 @@ std::string lightsUsda(const LightSet& set) {
         const double angle = 2 * light.angular_radius.value_or(0) * 180 / kPi;
         usd += "    def DistantLight \"Light_" + std::to_string(light.id) +
                "\" (\n        customData = {\n            double share = " +
-               text(energyShare(light, total)) +
-               "\n            double solidAngle = " + text(light.solid_angle) +
+               shortestNumber(energyShare(light, total)) +
+               "\n            double solidAngle = " + shortestNumber(light.solid_angle) +
                "\n        }\n    )\n    {\n";
-        usd += "        float inputs:angle = " + text(angle) + "\n";
-        usd += "        color3f inputs:color = (" + text(colour.x) + ", " + text(colour.y) + ", " +
-               text(colour.z) + ")\n";
-        usd += "        float inputs:intensity = " + text(intensity) + "\n";
+        usd += "        float inputs:angle = " + shortestNumber(angle) + "\n";
+        usd += "        color3f inputs:color = (" + shortestNumber(colour.x) + ", " +
+               shortestNumber(colour.y) + ", " + shortestNumber(colour.z) + ")\n";
+        usd += "        float inputs:intensity = " + shortestNumber(intensity) + "\n";
         usd += "        bool inputs:normalize = 1\n";
-        usd += "        quatd xformOp:orient = (" + text(q[3]) + ", " + text(q[0]) + ", " +
-               text(q[1]) + ", " + text(q[2]) + ")\n";
+        usd += "        quatd xformOp:orient = (" + shortestNumber(q[3]) + ", " +
+               shortestNumber(q[0]) + ", " + shortestNumber(q[1]) + ", " + shortestNumber(q[2]) +
+               ")\n";
         usd += "        uniform token[] xformOpOrder = [\"xformOp:orient\"]\n    }\n";
     }
     return usd + "}\n";

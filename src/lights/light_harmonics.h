@@ -3,9 +3,9 @@
 
 #include "image/image.h"
 #include "lights/light.h"
+#include "lights/summed_area.h"
 
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -41,30 +41,16 @@ int harmonicDegree(int count);
 /// of 8 degree x 4 degree points by the adjoint of cubic interpolation, so the cost is a few
 /// operations a pixel. Relative error of a coefficient at most 0.02 (2 pi l / (8 degree))^4, i.e.
 /// 1e-8 at l = 2 and 1e-2 at l = degree = 64, where Lambert's kernel has fallen to 1e-4.
-LightHarmonics probeHarmonics(const Image& latlong, int degree, int threads);
+///
+/// The probe's energy comes along, since reading a large probe's pixels once more costs as much as
+/// adding them up.
+struct ProbeSums {
+    LightHarmonics harmonics;
+    LuminousEnergy energy;
+};
+ProbeSums sumProbe(const Image& latlong, int degree, int threads);
 
 /// Of lights, as points; exact but for rounding.
 LightHarmonics lightHarmonics(const std::vector<Light>& lights, int degree, int threads);
-
-/// P_mm's factor and the recurrence's, for m = 0 .. degree + 1:
-///     P_lm = a_lm (x P_(l-1)m - b_lm P_(l-2)m),
-///     a = sqrt((4 l^2 - 1) / (l^2 - m^2)), b = sqrt(((l-1)^2 - m^2) / (4 (l-1)^2 - 1)).
-/// `next` is called for l = m, m + 1, ... degree with P_lm at every point; `x` holds cos theta,
-/// `sectoral` P_mm at every point. Values whose P_mm underflows are negligible up to degree 128.
-template <class Value, class Next>
-void legendreColumn(int m, int degree, const Value& x, const Value& sectoral, Next next) {
-    Value before{}, now = sectoral;
-    double b = 0;
-    for (int l = m;; ++l) {
-        next(l, now);
-        if (l == degree) return;
-        const double n = l + 1.0;
-        const double a = std::sqrt((4 * n * n - 1) / (n * n - m * m));
-        const Value after = a * (x * now - b * before);
-        b = 1 / a;
-        before = now;
-        now = after;
-    }
-}
 
 } // namespace ibl

@@ -1,10 +1,12 @@
 #include "lights/lights_json.h"
 
 #include "core/error.h"
+#include "lights/number_text.h"
 
 #include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <initializer_list>
 
 namespace ibl {
 namespace {
@@ -15,19 +17,36 @@ Json jsonOf(const V3d& v) {
     return Json::array({v.x, v.y, v.z});
 }
 
-Json jsonOf(const Light& light, const V3d& total) {
-    Json json;
-    json["id"] = light.id;
-    json["direction"] = jsonOf(light.direction);
-    json["irradiance"] = jsonOf(light.irradiance);
-    json["solid_angle"] = light.solid_angle;
-    json["share"] = energyShare(light, total);
-    if (light.angular_radius) json["angular_radius"] = *light.angular_radius;
-    if (light.region) {
-        json["region"] = {{"longitude", light.region->longitude},
-                          {"latitude", light.region->latitude}};
+/// Numbers in brackets, each the shortest text that reads back as the same double.
+void append(std::string& text, std::initializer_list<double> values) {
+    const char* separator = "[";
+    for (const double value : values) {
+        text += separator;
+        text += shortestNumber(value);
+        separator = ", ";
     }
-    return json;
+    text += ']';
+}
+
+/// One line. Put together by hand: a tree of JSON values costs more than the cuts.
+void append(std::string& text, const Light& light, const V3d& total) {
+    text += "    {\"id\": " + std::to_string(light.id) + ", \"direction\": ";
+    append(text, {light.direction.x, light.direction.y, light.direction.z});
+    text += ", \"irradiance\": ";
+    append(text, {light.irradiance.x, light.irradiance.y, light.irradiance.z});
+    text += ", \"solid_angle\": " + shortestNumber(light.solid_angle);
+    text += ", \"share\": " + shortestNumber(energyShare(light, total));
+    if (light.angular_radius)
+        text += ", \"angular_radius\": " + shortestNumber(*light.angular_radius);
+    if (light.region) {
+        const AngularRegion& region = *light.region;
+        text += ", \"region\": {\"longitude\": ";
+        append(text, {region.longitude[0], region.longitude[1]});
+        text += ", \"latitude\": ";
+        append(text, {region.latitude[0], region.latitude[1]});
+        text += '}';
+    }
+    text += '}';
 }
 
 V3d vectorOf(const Json& json) {
@@ -79,11 +98,17 @@ std::string lightsJson(const LightSet& set) {
                           {"kept", set.change->kept},
                           {"same_regions", set.change->same_regions}};
     }
-    Json& list = root["lights"] = Json::array();
-    for (const Light& light : set.lights)
-        list.push_back(jsonOf(light, total));
     // A source may be a file name in any encoding: what is not UTF-8 is replaced.
-    return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    std::string text = root.dump(2, ' ', false, Json::error_handler_t::replace);
+    text.erase(text.rfind("\n}"));
+    text += ",\n  \"lights\": [";
+    const char* separator = "\n";
+    for (const Light& light : set.lights) {
+        text += separator;
+        append(text, light, total);
+        separator = ",\n";
+    }
+    return text + (set.lights.empty() ? "]\n}\n" : "\n  ]\n}\n");
 }
 
 LightSet readLightsJson(std::string_view text, const std::string& name) {

@@ -9,11 +9,30 @@
 namespace ibl {
 namespace {
 
+/// The root mean square, over the region's energy, of the cosine of latitude: by it a step in
+/// longitude is shorter where the region's light is. The cosine of the middle latitude, as Debevec
+/// has it, gives errors a sixth larger at 64 lights (geometric mean over ten probes): of the tall
+/// regions beside a pole it sees neither how narrow they are at one end nor which end is lit.
+double litCosine(const SummedAreaTable& table, const PixelRegion& r) {
+    constexpr int kStrips = 16;
+    const int strips = std::min(kStrips, r.height);
+    double sum = 0, total = 0;
+    for (int k = 0; k < strips; ++k) {
+        const int begin = k * r.height / strips, end = (k + 1) * r.height / strips;
+        const double energy =
+            static_cast<double>(table.energy({r.x, r.y + begin, r.width, end - begin}));
+        const double sine = std::sin(kPi * (r.y + 0.5 * (begin + end)) / table.height());
+        sum += energy * sine * sine;
+        total += energy;
+    }
+    return std::sqrt(sum / total);
+}
+
+/// Of a region with energy.
 bool cutsLongitude(const SummedAreaTable& table, const PixelRegion& r) {
     if (r.height == 1) return true;
     if (r.width == 1) return false;
-    const double middle_theta = kPi * (r.y + 0.5 * r.height) / table.height();
-    const double across = 2 * kPi * r.width / table.width() * std::sin(middle_theta);
+    const double across = 2 * kPi * r.width / table.width() * litCosine(table, r);
     const double down = kPi * r.height / table.height();
     return across >= down;
 }

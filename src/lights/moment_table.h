@@ -2,43 +2,55 @@
 #pragma once
 
 #include "image/image.h"
-#include "lights/summed_area.h"
+#include "lights/prefix_table.h"
 
-#include <array>
 #include <cstdint>
-#include <vector>
 
 namespace ibl {
 
 /// Sums over rectangles of luminance times solid angle and of luminance times the integral of the
-/// direction, held as integers like `SummedAreaTable`'s and for the same reason.
+/// direction, held as integers like `SummedAreaTable`'s and for the same reason. Negative
+/// luminances count by their magnitude: a codec's ringing beside a sun can hold as much as the sky,
+/// and where it is not weighed it is never cut apart from the light around it.
 class MomentTable {
 public:
     /// Energy, then the moments x, y, z, in units of 2^-62 of the probe's energy.
-    using Sums = std::array<std::int64_t, 4>;
+    struct Sums {
+        std::int64_t parts[4];
+    };
 
-    /// As SummedAreaTable; takes 32 bytes a pixel.
-    MomentTable(const Image& latlong, int threads);
+    /// Of blocks of 2^shift x 2^shift pixels, the last ones smaller; takes 32 bytes a block.
+    /// `absolute_energy` is the probe's LuminousEnergy::absolute.
+    MomentTable(const Image& latlong, double absolute_energy, int shift, int threads);
 
-    int width() const { return width_; }
-    int height() const { return height_; }
+    /// In blocks, as all regions here.
+    int width() const { return table_.width(); }
+    int height() const { return table_.height(); }
 
-    Sums sums(const PixelRegion& region) const;
-    std::int64_t energy(const PixelRegion& region) const { return sums(region)[0]; }
+    /// A region of blocks as one of pixels.
+    PixelRegion pixels(const PixelRegion& blocks) const;
+
+    std::int64_t energy(const PixelRegion& region) const { return table_.sum(region).parts[0]; }
 
     /// Sum of luminance times squared distance from the region's centroid, in table units:
     /// W - |M|^2 / W, with W the energy and M the moment, since directions have length 1.
     double variance(const PixelRegion& region) const;
 
 private:
-    const Sums& corner(int x, int y) const {
-        return sums_[static_cast<std::size_t>(y) * (static_cast<std::size_t>(width_) + 1) +
-                     static_cast<std::size_t>(x)];
-    }
-
-    int width_;
-    int height_;
-    std::vector<Sums, UninitialisedAllocator<Sums>> sums_; ///< (height + 1)(width + 1)
+    int pixel_width_;
+    int pixel_height_;
+    int shift_;
+    PrefixTable<Sums> table_;
 };
+
+inline MomentTable::Sums operator+(const MomentTable::Sums& a, const MomentTable::Sums& b) {
+    return {a.parts[0] + b.parts[0], a.parts[1] + b.parts[1], a.parts[2] + b.parts[2],
+            a.parts[3] + b.parts[3]};
+}
+
+inline MomentTable::Sums operator-(const MomentTable::Sums& a, const MomentTable::Sums& b) {
+    return {a.parts[0] - b.parts[0], a.parts[1] - b.parts[1], a.parts[2] - b.parts[2],
+            a.parts[3] - b.parts[3]};
+}
 
 } // namespace ibl

@@ -4,7 +4,9 @@
 // 4 x 4 of them. Rows are integrated over theta by Gauss points; in psi a pixel is a point, and
 // sinc(m dpsi / 2) makes it an area.
 #include "core/parallel.h"
-#include "lights/light_harmonics.h"
+#include "lights/harmonic_sums.h"
+#include "lights/lit_lanes.h"
+#include "lights/summed_area.h"
 
 #include <algorithm>
 #include <cmath>
@@ -71,51 +73,130 @@ std::vector<ColumnTap> columnTaps(int width, int columns) {
     return taps;
 }
 
-/// cos and sin of m psi_c for c = 0 .. columns / 4, m fastest.
+/// A grid row of the probe's floats: its source rows, weighted and added, four at a time so that
+/// the sums are read and written less often.
+IBL_MULTIVERSION
+void addRows(const Image& probe, const std::vector<RowTap>& taps, float* line) {
+    const std::size_t size = probe.rowFloats();
+    std::size_t t = 0;
+    for (; t + 4 <= taps.size(); t += 4) {
+        const float *a = probe.row(taps[t].row), *b = probe.row(taps[t + 1].row),
+                    *c = probe.row(taps[t + 2].row), *d = probe.row(taps[t + 3].row);
+        float w[4];
+        for (std::size_t k = 0; k < 4; ++k)
+            w[k] = static_cast<float>(taps[t + k].weight);
+        for (std::size_t k = 0; k < size; ++k)
+            line[k] += (w[0] * a[k] + w[1] * b[k]) + (w[2] * c[k] + w[3] * d[k]);
+    }
+    for (; t < taps.size(); ++t) {
+        const float* a = probe.row(taps[t].row);
+        const float w = static_cast<float>(taps[t].weight);
+        for (std::size_t k = 0; k < size; ++k)
+            line[k] += w * a[k];
+    }
+}
+
+/// Adds the line's pixels (RGB, and one float after the last) to the grid's columns of four floats;
+/// the taps reach one column beyond the left, three the right.
+IBL_MULTIVERSION
+void spreadColumns(const float* line, const std::vector<ColumnTap>& columns, float* grid) {
+    std::size_t i = 0;
+    while (i < columns.size()) {
+        float* out = grid + 4 * (columns[i].first + 1);
+        FloatLanes sums[4];
+        __builtin_memcpy(sums, out, sizeof sums);
+        for (const int first = columns[i].first; i < columns.size() && columns[i].first == first;
+             ++i) {
+            FloatLanes pixel;
+            __builtin_memcpy(&pixel, line + 3 * i, sizeof pixel);
+            for (std::size_t k = 0; k < 4; ++k)
+                sums[k] += columns[i].weight[k] * pixel;
+        }
+        __builtin_memcpy(out, sums, sizeof sums);
+    }
+}
+
+/// A row of the grid, four floats a column, after one that is not part of it.
+std::vector<float> gridRow(const Image& probe, const std::vector<RowTap>& rows,
+                           const std::vector<ColumnTap>& columns, int grid_columns) {
+    std::vector<float> line(probe.rowFloats() + 1, 0.f);
+    addRows(probe, rows, line.data());
+    const std::size_t around = 4 * static_cast<std::size_t>(grid_columns);
+    std::vector<float> ring(around + 16, 0.f);
+    spreadColumns(line.data(), columns, ring.data());
+    for (std::size_t k = 0; k < 4; ++k)
+        ring[around + k] += ring[k];
+    for (std::size_t k = 4; k < 16; ++k)
+        ring[k] += ring[around + k];
+    return ring;
+}
+
+/// cos and sin of m psi_c for c = 0 .. columns / 4, m fastest, `waves` of them a column.
 struct WaveTable {
-    int waves;
+    int waves; ///< degree + 1, rounded up to whole vectors
     std::vector<double> cosine, sine;
 };
 
 WaveTable waveTable(int degree, int columns) {
-    WaveTable table{degree + 1, {}, {}};
+    WaveTable table{(degree + kLanes) / kLanes * kLanes, {}, {}};
+    std::vector<double> cosine, sine;
+    for (int k = 0; k < columns; ++k) {
+        cosine.push_back(std::cos(2 * kPi * k / columns));
+        sine.push_back(std::sin(2 * kPi * k / columns));
+    }
     for (int c = 0; c <= columns / 4; ++c) {
-        for (int m = 0; m <= degree; ++m) {
-            const double angle = 2 * kPi * ((static_cast<long>(c) * m) % columns) / columns;
-            table.cosine.push_back(std::cos(angle));
-            table.sine.push_back(std::sin(angle));
+        for (int m = 0; m < table.waves; ++m) {
+            table.cosine.push_back(cosine[static_cast<std::size_t>(c * m % columns)]);
+            table.sine.push_back(sine[static_cast<std::size_t>(c * m % columns)]);
         }
     }
     return table;
 }
 
-/// sum_c x_c exp(-i m psi_c) for all m of one channel. Columns half a turn apart differ by the sign
-/// (-1)^m, and those mirrored at a quarter turn by the sign of cosine or sine: a quarter is left.
-void waves(const WaveTable& table, const std::vector<float>& x, int channel, double* re,
-           double* im) {
-    const int columns = static_cast<int>(x.size()) / 4, half = columns / 2, quarter = half / 2;
-    const auto at = [&](int c) { return double{x[4 * static_cast<std::size_t>(c) + channel]}; };
-    std::fill_n(re, table.waves, 0.0);
-    std::fill_n(im, table.waves, 0.0);
+/// Columns half a turn apart differ by the sign (-1)^m, and those mirrored at a quarter turn by the
+/// sign of cosine or sine: a quarter of them is left.
+struct Folded {
+    std::array<double, kLanes> cosine[3], sine[3]; ///< by channel, for even and odd m in turn
+};
+
+std::vector<Folded> fold(const float* grid, int columns) {
+    const int half = columns / 2, quarter = half / 2;
+    std::vector<Folded> folded(static_cast<std::size_t>(quarter) + 1);
     for (int c = 0; c <= quarter; ++c) {
         const bool alone = c == 0 || c == quarter;
-        const double plus = at(c) + at(c + half), minus = at(c) - at(c + half);
         const int d = half - c;
-        const double plus_d = alone ? 0 : at(d) + at(d + half);
-        const double minus_d = alone ? 0 : at(d) - at(d + half);
-        const double even_cos = plus + plus_d, even_sin = plus - plus_d;
-        const double odd_cos = minus - minus_d, odd_sin = minus + minus_d;
-        const double* cosine = &table.cosine[static_cast<std::size_t>(c) * table.waves];
-        const double* sine = &table.sine[static_cast<std::size_t>(c) * table.waves];
-        int m = 0;
-        for (; m + 1 < table.waves; m += 2) {
-            re[m] += even_cos * cosine[m];
-            im[m] -= even_sin * sine[m];
-            re[m + 1] += odd_cos * cosine[m + 1];
-            im[m + 1] -= odd_sin * sine[m + 1];
+        for (int channel = 0; channel < 3; ++channel) {
+            const auto at = [&](int column) { return double{grid[4 * column + channel]}; };
+            const double plus = at(c) + at(c + half), minus = at(c) - at(c + half);
+            const double plus_d = alone ? 0 : at(d) + at(d + half);
+            const double minus_d = alone ? 0 : at(d) - at(d + half);
+            Folded& f = folded[static_cast<std::size_t>(c)];
+            const double cosines[2] = {plus + plus_d, minus - minus_d};
+            const double sines[2] = {plus - plus_d, minus + minus_d};
+            for (std::size_t k = 0; k < kLanes; ++k) {
+                f.cosine[channel][k] = cosines[k % 2];
+                f.sine[channel][k] = sines[k % 2];
+            }
         }
-        re[m] += even_cos * cosine[m]; // the degree is even
-        im[m] -= even_sin * sine[m];
+    }
+    return folded;
+}
+
+/// sum_c x_c exp(-i m psi_c) of three channels: re, im, re, im, re, im, each of `waves` values.
+IBL_MULTIVERSION
+void waves(const WaveTable& table, const std::vector<Folded>& folded, double* out) {
+    for (int m = 0; m < table.waves; m += kLanes) {
+        Lanes sums[6]{};
+        for (std::size_t c = 0; c < folded.size(); ++c) {
+            const std::size_t at = c * static_cast<std::size_t>(table.waves) + m;
+            const Lanes cosine = loadLanes(&table.cosine[at]), sine = loadLanes(&table.sine[at]);
+            for (std::size_t k = 0; k < 3; ++k) {
+                sums[2 * k] += loadLanes(folded[c].cosine[k].data()) * cosine;
+                sums[2 * k + 1] -= loadLanes(folded[c].sine[k].data()) * sine;
+            }
+        }
+        for (int k = 0; k < 6; ++k)
+            __builtin_memcpy(out + k * table.waves + m, &sums[k], sizeof sums[k]);
     }
 }
 
@@ -131,40 +212,26 @@ struct GridWaves {
     }
 };
 
-GridWaves gridWaves(const Image& probe, int degree, int threads) {
-    GridWaves grid{4 * degree, 8 * degree, degree + 1, {}};
+/// `energies` gets the energy of each row of the probe.
+GridWaves gridWaves(const Image& probe, int degree, int threads,
+                    std::vector<LuminousEnergy>& energies) {
+    const WaveTable table = waveTable(degree, 8 * degree);
+    GridWaves grid{4 * degree, 8 * degree, table.waves, {}};
     const int all_rows = grid.rows + 2 * kMargin;
     grid.values.resize(static_cast<std::size_t>(all_rows) * 6 * grid.waves);
     const auto rows = rowTaps(probe.height, grid.rows);
     const auto columns = columnTaps(probe.width, grid.columns);
-    const WaveTable table = waveTable(degree, grid.columns);
-    parallelFor(static_cast<std::size_t>(all_rows), threads, [&](std::size_t r) {
-        std::vector<float> line(probe.rowFloats(), 0.f);
-        for (const RowTap& tap : rows[r]) {
-            const float* in = probe.row(tap.row);
-            const float weight = static_cast<float>(tap.weight);
-            for (std::size_t k = 0; k < line.size(); ++k)
-                line[k] += weight * in[k];
-        }
-        // Four floats to a column; the taps reach one column beyond the left, three the right.
-        std::vector<float> spread(4 * static_cast<std::size_t>(grid.columns + 4), 0.f);
-        for (std::size_t i = 0; i < columns.size(); ++i) {
-            float* out = &spread[4 * static_cast<std::size_t>(columns[i].first + 1)];
-            const float rgb[4] = {line[3 * i], line[3 * i + 1], line[3 * i + 2], 0};
-            for (int k = 0; k < 4; ++k) {
-                for (int c = 0; c < 4; ++c)
-                    out[4 * k + c] += columns[i].weight[k] * rgb[c];
-            }
-        }
-        std::vector<float> ring(spread.begin() + 4, spread.begin() + 4 + 4 * grid.columns);
-        for (int c = 0; c < 4; ++c) {
-            ring[ring.size() - 4 + c] += spread[c];
-            for (int k = 0; k < 3; ++k)
-                ring[4 * k + c] += spread[4 * (grid.columns + 1 + k) + c];
-        }
-        for (int c = 0; c < 3; ++c) {
-            waves(table, ring, c, grid.at(static_cast<int>(r), 2 * c),
-                  grid.at(static_cast<int>(r), 2 * c + 1));
+    constexpr int kRun = 4;
+    const int runs = (all_rows + kRun - 1) / kRun;
+    parallelFor(static_cast<std::size_t>(runs), threads, [&](std::size_t index) {
+        const int run = static_cast<int>(index);
+        // About the rows that the run takes from, so that they are in the cache.
+        for (long j = long{run} * probe.height / runs; j < (run + 1L) * probe.height / runs; ++j)
+            energies[static_cast<std::size_t>(j)] = luminousEnergyOfRow(probe, static_cast<int>(j));
+        for (int r = run * kRun; r < std::min(all_rows, (run + 1) * kRun); ++r) {
+            const auto ring =
+                gridRow(probe, rows[static_cast<std::size_t>(r)], columns, grid.columns);
+            waves(table, fold(ring.data() + 4, grid.columns), grid.at(r, 0));
         }
     });
     return grid;
@@ -186,40 +253,58 @@ void foldMargins(GridWaves& grid) {
     }
 }
 
+/// Grid rows [begin, end) of the northern half with their mirror images: for even l
+/// P_lm(-x) = (-1)^m P_lm(x), so that the two are one source; for l = 1 the sign is the other.
+void addRowPairs(GridWaves& grid, const std::vector<double>& pixel, int begin, int end,
+                 LightHarmonics& harmonics) {
+    HarmonicSources sources(static_cast<std::size_t>(end - begin));
+    for (int r = begin; r < end; ++r) {
+        const double theta = kPi * (r + 0.5) / grid.rows;
+        sources.x[static_cast<std::size_t>(r - begin)] = std::cos(theta);
+        sources.sine[static_cast<std::size_t>(r - begin)] = std::sin(theta);
+    }
+    for (int m = 0; m <= harmonics.degree; ++m) {
+        const double sign = m % 2 ? -1 : 1, area = pixel[static_cast<std::size_t>(m)];
+        for (int r = begin; r < end; ++r) {
+            const std::size_t i = static_cast<std::size_t>(r - begin);
+            for (int part = 0; part < 6; ++part) {
+                const double north = area * grid.at(r + kMargin, part)[m];
+                const double south = area * grid.at(grid.rows - 1 - r + kMargin, part)[m];
+                const std::size_t k = static_cast<std::size_t>(part);
+                sources.wave[k][i] = north + sign * south;
+                if (m == 0) // P_10 = sqrt(3) x P_00
+                    harmonics.first[0][k] +=
+                        std::sqrt(3.0) * sources.x[i] * sources.sectoral[i] * (north - south);
+                if (m == 1) harmonics.first[1][k] += sources.sectoral[i] * (north + south);
+            }
+        }
+        addOrder(sources, m, harmonics.degree, harmonics.even.data() + harmonics.column(m));
+        raiseSectoral(sources, m);
+    }
+}
+
 } // namespace
 
-LightHarmonics probeHarmonics(const Image& latlong, int degree, int threads) {
-    GridWaves grid = gridWaves(latlong, degree, threads);
+ProbeSums sumProbe(const Image& latlong, int degree, int threads) {
+    std::vector<LuminousEnergy> energies(static_cast<std::size_t>(latlong.height));
+    GridWaves grid = gridWaves(latlong, degree, threads, energies);
     foldMargins(grid);
-    LightHarmonics harmonics(degree);
-    parallelFor(static_cast<std::size_t>(degree) + 1, threads, [&](std::size_t wave) {
-        const int m = static_cast<int>(wave);
+    std::vector<double> pixel; // a pixel's extent in psi, for each wave
+    for (int m = 0; m <= degree; ++m) {
         const double half_angle = kPi * m / latlong.width;
-        const double pixel =
-            2 * kPi / latlong.width * (m == 0 ? 1 : std::sin(half_angle) / half_angle);
-        LightHarmonics::Parts* column = harmonics.even.data() + harmonics.column(m);
-        // P_mm = sqrt((2m + 1)!! / (2m)!! / (4 pi)) sin^m theta
-        double norm = std::sqrt(1 / (4 * kPi));
-        for (int k = 1; k <= m; ++k)
-            norm *= std::sqrt((2.0 * k + 1) / (2.0 * k));
-        for (int r = 0; r < grid.rows; ++r) {
-            const double theta = kPi * (r + 0.5) / grid.rows;
-            LightHarmonics::Parts source;
-            for (int part = 0; part < 6; ++part)
-                source[static_cast<std::size_t>(part)] = pixel * grid.at(r + kMargin, part)[m];
-            const auto add = [&](double p, LightHarmonics::Parts& out) {
-                for (std::size_t k = 0; k < 6; ++k)
-                    out[k] += p * source[k];
-            };
-            LightHarmonics::Parts* out = column;
-            legendreColumn(m, degree, std::cos(theta), norm * std::pow(std::sin(theta), m),
-                           [&](int l, double p) {
-                               if (l == 1) add(p, harmonics.first[wave]);
-                               if (l % 2 == 0) add(p, *out++);
-                           });
-        }
+        pixel.push_back(2 * kPi / latlong.width * (m == 0 ? 1 : std::sin(half_angle) / half_angle));
+    }
+    constexpr int kRun = 32;
+    const int half = grid.rows / 2, runs = (half + kRun - 1) / kRun;
+    std::vector<LightHarmonics> parts(static_cast<std::size_t>(runs), LightHarmonics(degree));
+    parallelFor(parts.size(), threads, [&](std::size_t run) {
+        const int begin = static_cast<int>(run) * kRun;
+        addRowPairs(grid, pixel, begin, std::min(half, begin + kRun), parts[run]);
     });
-    return harmonics;
+    ProbeSums total{LightHarmonics(degree), luminousEnergy(energies)};
+    for (const LightHarmonics& part : parts)
+        total.harmonics += part;
+    return total;
 }
 
 } // namespace ibl

@@ -1,66 +1,95 @@
 #include "lights/summed_area.h"
 
 #include "core/parallel.h"
-#include "lights/light.h"
+#include "lights/lit_lanes.h"
 #include "panorama/conventions.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace ibl {
-double litEnergy(const Image& latlong, int threads) {
-    std::vector<double> rows(static_cast<std::size_t>(latlong.height));
-    parallelFor(rows.size(), threads, [&](std::size_t j) {
-        const float* rgb = latlong.row(static_cast<int>(j));
-        double sum = 0;
-        for (int i = 0; i < latlong.width; ++i)
-            sum += litLuminance(rgb + 3 * i);
-        rows[j] = sum * latlongPixelSolidAngle(latlong.width, latlong.height, static_cast<int>(j));
-    });
-    double total = 0;
-    for (const double row : rows)
-        total += row;
+namespace {
+
+IBL_MULTIVERSION
+LuminousEnergy luminanceOfRow(const float* rgb, int width) {
+    Lanes lit{}, absolute{};
+    const auto add = [&](const PixelLanes& p) __attribute__((always_inline)) {
+        lit += litLuminance(p);
+        absolute += absoluteLuminance(p);
+    };
+    int i = 0;
+    for (; i + kLanes <= width; i += kLanes)
+        add(pixelLanes(rgb + 3 * i));
+    if (i < width) add(lastPixelLanes(rgb + 3 * i, width - i));
+    return {sumOf(lit), sumOf(absolute)};
+}
+
+/// Sums up to each of four values: shifted by one and added, then by two.
+IBL_INLINE LongLanes runningSums(LongLanes v) {
+    const LongLanes zero{};
+    v += __builtin_shufflevector(zero, v, 0, 4, 5, 6);
+    return v + __builtin_shufflevector(zero, v, 0, 0, 4, 5);
+}
+
+IBL_MULTIVERSION
+void addEnergyRow(const float* rgb, int width, double weight, const std::int64_t* above,
+                  std::int64_t* below) {
+    LongLanes before{};
+    below[0] = 0;
+    int i = 0;
+    for (; i + kLanes <= width; i += kLanes) {
+        LongLanes sums = runningSums(rounded(weight * litLuminance(pixelLanes(rgb + 3 * i))));
+        sums += before;
+        before = __builtin_shufflevector(sums, sums, 3, 3, 3, 3);
+        LongLanes up;
+        __builtin_memcpy(&up, above + i + 1, sizeof up);
+        up += sums;
+        __builtin_memcpy(below + i + 1, &up, sizeof up);
+    }
+    if (i == width) return;
+    const LongLanes last =
+        before +
+        runningSums(rounded(weight * litLuminance(lastPixelLanes(rgb + 3 * i, width - i))));
+    for (int k = 0; i < width; ++i, ++k)
+        below[i + 1] = above[i + 1] + last[k];
+}
+
+} // namespace
+
+LuminousEnergy luminousEnergyOfRow(const Image& latlong, int row) {
+    const LuminousEnergy sums = luminanceOfRow(latlong.row(row), latlong.width);
+    const double solid_angle = latlongPixelSolidAngle(latlong.width, latlong.height, row);
+    return {sums.lit * solid_angle, sums.absolute * solid_angle};
+}
+
+LuminousEnergy luminousEnergy(const std::vector<LuminousEnergy>& rows) {
+    LuminousEnergy total;
+    for (const LuminousEnergy& row : rows) {
+        total.lit += row.lit;
+        total.absolute += row.absolute;
+    }
     return total;
 }
 
-SummedAreaTable::SummedAreaTable(const Image& latlong, int threads)
-    : width_(latlong.width), height_(latlong.height) {
-    const std::size_t stride = static_cast<std::size_t>(width_) + 1;
-    sums_.resize(stride * (static_cast<std::size_t>(height_) + 1));
-    std::fill_n(sums_.begin(), stride, 0);
-    const double total = litEnergy(latlong, threads);
-    if (total > 0) scale_ = std::ldexp(1.0, 62) / total;
-
-    // Prefix sums along the rows, then down the columns.
-    parallelFor(static_cast<std::size_t>(height_), threads, [&](std::size_t j) {
-        const float* rgb = latlong.row(static_cast<int>(j));
-        std::int64_t* out = &sums_[(j + 1) * stride];
-        const double weight = scale_ * latlongPixelSolidAngle(width_, height_, static_cast<int>(j));
-        std::int64_t sum = 0;
-        out[0] = 0;
-        for (int i = 0; i < width_; ++i) {
-            sum += static_cast<std::int64_t>(weight * litLuminance(rgb + 3 * i) + 0.5);
-            out[i + 1] = sum;
-        }
+LuminousEnergy luminousEnergy(const Image& latlong, int threads) {
+    std::vector<LuminousEnergy> rows(static_cast<std::size_t>(latlong.height));
+    parallelFor(rows.size(), threads, [&](std::size_t j) {
+        rows[j] = luminousEnergyOfRow(latlong, static_cast<int>(j));
     });
-    constexpr std::size_t kColumns = 256;
-    parallelForRuns(stride, kColumns, threads, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t j = 1; j < static_cast<std::size_t>(height_); ++j) {
-            const std::int64_t* above = &sums_[j * stride];
-            std::int64_t* below = &sums_[(j + 1) * stride];
-            for (std::size_t i = begin; i < end; ++i)
-                below[i] += above[i];
-        }
-    });
+    return luminousEnergy(rows);
 }
 
-std::int64_t SummedAreaTable::energy(const PixelRegion& r) const {
-    const int y1 = r.y + r.height;
-    const auto columns = [&](int x0, int x1) {
-        return corner(x1, y1) - corner(x0, y1) - corner(x1, r.y) + corner(x0, r.y);
-    };
-    const int x1 = r.x + r.width;
-    return x1 <= width_ ? columns(r.x, x1) : columns(r.x, width_) + columns(0, x1 - width_);
+SummedAreaTable::SummedAreaTable(const Image& latlong, double lit_energy, int threads)
+    : table_(latlong.width, latlong.height),
+      scale_(lit_energy > 0 ? std::ldexp(1.0, 62) / lit_energy : 0.0) {
+    parallelFor(static_cast<std::size_t>(table_.bands()), threads, [&](std::size_t band) {
+        table_.fillBand(
+            static_cast<int>(band), [&](int j, const std::int64_t* above, std::int64_t* below) {
+                addEnergyRow(latlong.row(j), latlong.width,
+                             scale_ * latlongPixelSolidAngle(latlong.width, latlong.height, j),
+                             above, below);
+            });
+    });
+    table_.addUpBands();
 }
 
 } // namespace ibl

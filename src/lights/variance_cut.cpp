@@ -45,12 +45,14 @@ std::pair<PixelRegion, PixelRegion> cutRegion(const MomentTable& table, const Pi
     return across.larger <= down.larger ? across.parts : down.parts;
 }
 
-/// What the region's light does to the irradiance, about. Energy W moved by s changes it by W s
-/// where it is moved to first order, and a light at the centroid of luminance moves each channel by
-/// a part of the region's radius s, s^2 the variance over W.
+/// Which region is cut next. Moving energy W by s changes the irradiance by W s to first order, but
+/// at the centroid luminance has no such term, and what is left falls faster with s, while what the
+/// channels differ falls slower with the count. By measurement W s^(2/3), s^2 the variance over W,
+/// does best over ten probes and 4 to 4096 lights: W s is 2 % worse and W s^2, the variance
+/// itself, a tenth (geometric means).
 double priority(const MomentTable& table, const PixelRegion& r) {
     const double energy = static_cast<double>(table.energy(r));
-    return std::sqrt(energy * table.variance(r));
+    return std::cbrt(energy * energy * table.variance(r));
 }
 
 } // namespace

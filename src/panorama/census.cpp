@@ -5,7 +5,10 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <limits>
 
@@ -289,6 +292,22 @@ Census takeCensus(const Panorama& panorama, int threads) {
                                                census.sun_at.x + 0.5, census.sun_at.y + 0.5);
     }
     return census;
+}
+
+bool surelyValid(const Image& image, int threads) {
+    std::atomic<bool> valid{true};
+    parallelForRuns(image.pixels.size(), std::size_t{1} << 16, threads,
+                    [&](std::size_t begin, std::size_t end) {
+                        // A float that is finite and not negative has bits below those of infinity,
+                        // 0xff << 23. Others have the sign bit, or get it when 1 << 23 is added.
+                        std::uint32_t bits = 0;
+                        for (std::size_t i = begin; i < end; ++i) {
+                            const auto value = std::bit_cast<std::uint32_t>(image.pixels[i]);
+                            bits |= value | (value + (1u << 23));
+                        }
+                        if (bits >> 31) valid = false;
+                    });
+    return valid;
 }
 
 long repair(std::string_view subject, Panorama& panorama) {

@@ -187,10 +187,43 @@ TEST(Lights, BlackProbeSaysSo) {
     }
 }
 
+TEST(Lights, BadPixelsAreRefusedOrMended) {
+    const Scratch scratch;
+    runTool({"convert", "builtin:furnace", "--to", "latlong", "--size", "16", "--compression",
+             "none", "-o", "good.exr"},
+            scratch.path());
+    const auto make = [&](const std::string& value) {
+        // The last float of the file is the last pixel's red (channels are stored B, G, R).
+        std::string bytes = readFile(scratch / "good.exr");
+        bytes.replace(bytes.size() - 4, 4, value);
+        writeFile(scratch / "bad.exr", bytes);
+    };
+    const Json good = lightsOf({"good.exr", "-n", "16"}, scratch);
+    for (const std::string& value : {std::string("\0\0\xc0\x7f", 4),    // NaN
+                                     std::string("\0\0\x80\x7f", 4)}) { // infinity
+        make(value);
+        for (const char* method : {"median", "variance", "importance"}) {
+            expectRefused(
+                runTool({"lights", "bad.exr", "--method", method, "-o", "no.json"}, scratch.path()),
+                2, "--repair");
+        }
+        EXPECT_FALSE(std::filesystem::exists(scratch / "no.json"));
+        const Json mended = lightsOf({"bad.exr", "-n", "16", "--repair"}, scratch);
+        EXPECT_EQ(mended.at("lights"), good.at("lights"));
+    }
+    make(std::string("\0\0\x48\xc2", 4)); // -50
+    const ToolResult kept = runTool({"lights", "bad.exr", "-n", "16"}, scratch.path());
+    EXPECT_EQ(kept.exit_code, 0);
+    EXPECT_NE(kept.err.find("1 negative pixel"), std::string::npos) << kept.err;
+    EXPECT_LT(Json::parse(kept.out).at("total_irradiance")[0].get<double>(),
+              good.at("total_irradiance")[0].get<double>());
+}
+
 TEST(Lights, EveryLayoutGivesTheSameSun) {
     const Scratch scratch;
     const Json expected = lightsOf({"builtin:sky", "--sun"}, scratch)["lights"][0];
-    for (const char* layout : {"faces", "vcross", "hcross", "strip", "vstrip", "exr-cube"}) {
+    for (const char* layout : {"faces", "vcross", "hcross", "strip", "vstrip", "exr-cube",
+                               "angular", "mirrorball", "octahedral"}) {
         runTool({"convert", "builtin:sky", "--to", layout, "--size", "256", "-o", "p.exr"},
                 scratch.path());
         const Json found = lightsOf({"p.exr", "--from", layout, "--sun"}, scratch)["lights"][0];

@@ -1,0 +1,144 @@
+#include "convolve/near_map.h"
+
+#include "core/parallel.h"
+#include "panorama/layouts.h"
+#include "panorama/resample.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace ibl {
+namespace {
+
+/// What takes the texel whose weights are reckoned to the one that they are for: first the
+/// reflection of psi, then the turn, then the reflection of theta.
+struct Move {
+    int x, y; ///< the texel whose weights are reckoned
+    bool reflect_psi = false;
+    int turn = 0; ///< columns of the probe
+    bool reflect_theta = false;
+};
+
+/// On the cube faces: to the quarter of +Z with x, y > 0, or of +Y with x, z > 0, as far as
+/// quarters and halves of a turn are whole columns.
+Move moveOnFaces(const MapExtent& map, int x, int y, int probe_width) {
+    Move move;
+    V3d d = *texelDirection(map.layout, map.width, map.height, x + 0.5, y + 0.5);
+    if (d.y < 0) {
+        move.reflect_theta = true;
+        d.y = -d.y;
+    }
+    const int quarters = probe_width % 4 == 0 ? 4 : probe_width % 2 == 0 ? 2 : 1;
+    const auto quarter = [&] { // u + 1/4
+        d = V3d(-d.z, d.y, d.x);
+        move.turn -= probe_width / 4;
+    };
+    const auto half = [&] {
+        d = V3d(-d.x, d.y, -d.z);
+        move.turn -= probe_width / 2;
+    };
+    const double side = std::max(std::abs(d.x), std::abs(d.z));
+    if (quarters >= 2 && (side < d.y ? d.z < 0 : d.z == -side || d.x == -side)) half();
+    if (quarters == 4 && side > d.y && d.x == side) quarter();
+    if (d.x < 0) {
+        move.reflect_psi = true;
+        d.x = -d.x;
+    }
+    const V2d p = texelPoint(map.layout, map.width, map.height, d);
+    move.x = static_cast<int>(p.x);
+    move.y = static_cast<int>(p.y);
+    return move;
+}
+
+Move moveOf(const MapExtent& map, int x, int y, int probe_width) {
+    if (map.layout == Layout::faces) return moveOnFaces(map, x, y, probe_width);
+    Move move{x, y};
+    if (map.layout == Layout::latlong) {
+        const int turns = std::gcd(map.width, probe_width);
+        move.x = x % (map.width / turns);
+        move.turn = x / (map.width / turns) * (probe_width / turns);
+        move.reflect_theta = 2 * y >= map.height + 1;
+        if (move.reflect_theta) move.y = map.height - 1 - y;
+    }
+    return move;
+}
+
+/// The weighted sum of pixels for a texel.
+V3d weightedSum(const Image& probe, const NearWeights& weights, const Move& move,
+                const float* area) {
+    double sum[3] = {weights.area * area[0], weights.area * area[1], weights.area * area[2]};
+    const int width = probe.width;
+    const double* weight = weights.weight.data();
+    for (int j = 0; j < weights.rows; ++j) {
+        const int row = weights.row + j;
+        const float* pixels = probe.row(move.reflect_theta ? probe.height - 1 - row : row);
+        int column = weights.column % width;
+        if (move.reflect_psi) column = width - 1 - column;
+        column = ((column + move.turn) % width + width) % width;
+        for (int i = 0; i < weights.columns; ++i, ++weight) {
+            const float* pixel = pixels + std::size_t{3} * column;
+            for (int c = 0; c < 3; ++c)
+                sum[c] += *weight * pixel[c];
+            if (move.reflect_psi)
+                column = column == 0 ? width - 1 : column - 1;
+            else
+                column = column == width - 1 ? 0 : column + 1;
+        }
+    }
+    return {sum[0], sum[1], sum[2]};
+}
+
+} // namespace
+
+Image nearMap(const Panorama& probe, const NearField& field, const PrefilterRequest& request,
+              const Footprint& footprint, int threads) {
+    if (isCubeFamily(request.layout) && request.layout != Layout::faces) {
+        PrefilterRequest faces = request;
+        faces.layout = Layout::faces;
+        return resample({Layout::faces, nearMap(probe, field, faces, footprint, threads)},
+                        request.layout, request.size, threads)
+            .image;
+    }
+    const V2i size = layoutExtent(request.layout, request.size);
+    const MapExtent map{request.layout, size.x, size.y, texelAngle(request)};
+    const Image area =
+        resample(probe, request.layout, request.size, threads, Enlarging::hold).image;
+    // Texels in order of the one whose weights they use.
+    struct Texel {
+        int key, x, y;
+    };
+    std::vector<Texel> texels;
+    for (int y = 0; y < map.height; ++y) {
+        for (int x = 0; x < map.width; ++x) {
+            if (!texelDirection(map.layout, map.width, map.height, x + 0.5, y + 0.5)) continue;
+            const Move move = moveOf(map, x, y, field.width);
+            texels.push_back({move.y * map.width + move.x, x, y});
+        }
+    }
+    std::ranges::stable_sort(texels, {}, &Texel::key);
+    std::vector<std::size_t> first;
+    for (std::size_t i = 0; i < texels.size(); ++i)
+        if (i == 0 || texels[i].key != texels[i - 1].key) first.push_back(i);
+    first.push_back(texels.size());
+    Image result(size.x, size.y);
+    std::ranges::fill(result.pixels, 0.0f);
+    constexpr std::size_t kAtOnce = 16;
+    parallelForRuns(first.size() - 1, kAtOnce, threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t group = begin; group < end; ++group) {
+            const int key = texels[first[group]].key;
+            const NearWeights weights =
+                nearWeights(field, map, key % map.width, key / map.width, footprint);
+            for (std::size_t i = first[group]; i < first[group + 1]; ++i) {
+                const Texel& t = texels[i];
+                const V3d value = weightedSum(
+                    probe.image, weights, moveOf(map, t.x, t.y, field.width), area.at(t.x, t.y));
+                for (int c = 0; c < 3; ++c)
+                    result.at(t.x, t.y)[c] = static_cast<float>(value[c]);
+            }
+        }
+    });
+    return result;
+}
+
+} // namespace ibl

@@ -1,0 +1,19 @@
+// A probe convolved with a narrow kernel, at a map's texels.
+//
+// Weights (near_weights.h) depend on where a texel lies between the probe's pixels and on nothing
+// else: turns and reflections that take pixels to pixels and texels to texels take weights to
+// weights. A cube's 24 quarter faces need two between them, a lat-long map a few columns.
+#pragma once
+
+#include "convolve/near_weights.h"
+#include "convolve/prefilter.h"
+#include "panorama/panorama.h"
+
+namespace ibl {
+
+/// The mean over each texel's footprint of the kernel's convolution with a lat-long probe. What
+/// has no direction is 0.
+Image nearMap(const Panorama& probe, const NearField& field, const PrefilterRequest& request,
+              const Footprint& footprint, int threads);
+
+} // namespace ibl

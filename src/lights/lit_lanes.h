@@ -1,0 +1,66 @@
+// A lat-long's pixels a few at a time, and doubles rounded to 64-bit integers.
+#pragma once
+
+#include "core/simd.h"
+#include "image/pixel_lanes.h"
+#include "lights/light.h"
+
+#include <algorithm>
+#include <cstdint>
+
+namespace ibl {
+
+typedef std::int64_t LongLanes __attribute__((vector_size(kLanes * sizeof(std::int64_t))));
+
+IBL_INLINE Lanes loadLanes(const double* from) {
+    Lanes v;
+    __builtin_memcpy(&v, from, sizeof v);
+    return v;
+}
+
+IBL_INLINE double sumOf(const Lanes& v) {
+    return (v[0] + v[1]) + (v[2] + v[3]);
+}
+
+/// kLanes RGB pixels.
+struct PixelLanes {
+    Lanes red, green, blue;
+};
+
+IBL_INLINE PixelLanes pixelLanes(const float* rgb) {
+    return {loadPixels<0>(rgb), loadPixels<1>(rgb), loadPixels<2>(rgb)};
+}
+
+/// The last `count` pixels of a row, fewer than kLanes, and black ones after them.
+IBL_INLINE PixelLanes lastPixelLanes(const float* rgb, int count) {
+    float pixels[3 * kLanes]{};
+    std::copy_n(rgb, 3 * count, pixels);
+    return pixelLanes(pixels);
+}
+
+IBL_INLINE Lanes luminanceOf(const PixelLanes& p) {
+    return kLuminanceRed * p.red + kLuminanceGreen * p.green + kLuminanceBlue * p.blue;
+}
+
+/// litLuminance() of each pixel.
+IBL_INLINE Lanes litLuminance(const PixelLanes& p) {
+    const Lanes y = luminanceOf(p);
+    return y > 0 ? y : Lanes{};
+}
+
+IBL_INLINE Lanes absoluteLuminance(const PixelLanes& p) {
+    const Lanes y = luminanceOf(p);
+    return y > 0 ? y : -y;
+}
+
+/// To the nearest integers, of magnitudes up to 2^62. With v = 2^32 high + low, a double of
+/// 1.5 2^52 + high has the integer `high` in its low bits, and so has 1.5 2^52 + low.
+IBL_INLINE LongLanes rounded(const Lanes& v) {
+    const Lanes magic = Lanes{} + 0x1.8p52;
+    const Lanes high = v * 0x1p-32 + magic;
+    const Lanes low = (v - (high - magic) * 0x1p32) + magic;
+    return (reinterpret_cast<LongLanes>(high) << 32) +
+           (reinterpret_cast<LongLanes>(low) - reinterpret_cast<LongLanes>(magic));
+}
+
+} // namespace ibl
