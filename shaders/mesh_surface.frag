@@ -9,6 +9,9 @@ void main() {
     readSurface(vertex_texcoord, dx, dy);
     vec3 normal = bentNormal(normalize(vertex_normal), vertex_position, vertex_texcoord, dx, dy);
     surface_depth = 1.0 / gl_FragCoord.w;
+    surface_point = vertex_position;
+    vec3 facet = normalize(cross(dFdx(vertex_position), dFdy(vertex_position)));
+    facet_normal = dot(facet, viewRay()) > 0.0 ? -facet : facet;
     if (surface_alpha < alpha_cutoff) discard;
     vec3 radiance = shade(gl_FrontFacing ? normal : -normal, normalize(viewRay()));
     color = vec4(radiance + surface_emission, 1.0);

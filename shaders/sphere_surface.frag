@@ -10,6 +10,7 @@ uniform vec3 moment_forward; // sphere_eye x forward
 uniform vec3 moment_x;       // sphere_eye x step_x
 uniform vec3 moment_y;       // sphere_eye x step_y
 uniform float sphere_radius; // in the world
+uniform vec3 sphere_centre;
 uniform mat3 object_from_world;
 layout(location = 0) out vec4 color;
 
@@ -45,6 +46,8 @@ void main() {
     surface_depth = sphere_radius * distance / length(ray);
     if (surface_alpha < alpha_cutoff) discard;
     vec3 normal = inside ? -outward : outward;
+    surface_point = sphere_centre + sphere_radius * outward;
+    facet_normal = normal;
     vec3 radiance = shade(normal, incident);
     color = vec4(radiance + surface_emission, 1.0);
 }

@@ -26,7 +26,7 @@ struct LightsOptions {
     std::optional<int> count;
     std::optional<double> max_error;
     std::optional<LightMethod> method;
-    std::optional<Placement> placement;
+    std::optional<LightPlacement> placement;
     bool sun = false;
     std::string residual;
     std::string previous;
@@ -79,7 +79,7 @@ LightSet cut(Session& session, const LightsOptions& options, const Image& latlon
     request.method = options.method.value_or(LightMethod::median);
     request.count = options.count.value_or(request.count);
     request.max_error = options.max_error;
-    request.placement = options.placement.value_or(Placement::centroid);
+    request.placement = options.placement.value_or(LightPlacement::centroid);
     LightSet previous;
     if (!options.previous.empty()) {
         previous = readPrevious(session, options, methodName(request.method));
@@ -192,7 +192,8 @@ void bindCuts(CLI::App& app, LightsOptions& options) {
         app.add_option_function<std::string>(
                "--place",
                [&options](const std::string& name) {
-                   options.placement = name == "centre" ? Placement::centre : Placement::centroid;
+                   options.placement =
+                       name == "centre" ? LightPlacement::centre : LightPlacement::centroid;
                },
                "Where in its region a light stands (default centroid, of its energy)")
             ->check(CLI::IsMember({"centroid", "centre"}))

@@ -26,6 +26,7 @@ struct RenderOptions {
     MaterialArguments material;
     CameraArguments camera;
     PictureArguments picture;
+    LightArguments lights;
     DisplayArguments display;
     FrameRange frames;
     DeviceArguments device;
@@ -35,7 +36,7 @@ struct RenderOptions {
 /// The scene of a frame and what it was made from. What the next frame has under the same name is
 /// kept.
 struct LoadedScene {
-    std::string probe_name, object_name, background_name;
+    std::string probe_name, object_name, background_name, lights_name;
     Panorama probe, diffuse;
     std::vector<NamedCamera> cameras;
     Scene scene;
@@ -72,8 +73,11 @@ bool loadScene(Session& session, const RenderOptions& options, const FramePlace&
         last = name;
         return changed = true;
     };
-    if (renamed(loaded.probe_name, options.probe.input)) {
-        loadProbe(session, options, loaded.probe_name, loaded);
+    const bool other_probe = renamed(loaded.probe_name, options.probe.input);
+    if (other_probe) loadProbe(session, options, loaded.probe_name, loaded);
+    if (renamed(loaded.lights_name, options.lights.lights) ||
+        (other_probe && isLightCount(loaded.lights_name))) {
+        scene.lights = lightsOf(session, options.lights, loaded.lights_name, loaded.probe);
     }
     if (renamed(loaded.object_name, options.object.name)) {
         ObjectFile file = objectOf(session, options.object, loaded.object_name);
@@ -81,8 +85,11 @@ bool loadScene(Session& session, const RenderOptions& options, const FramePlace&
         loaded.cameras = std::move(file.cameras);
         overrideSurfaces(options.material, scene.object);
     }
-    if (renamed(loaded.background_name, options.picture.background)) {
-        scene.background = backgroundOf(session, loaded.background_name);
+    if (!scene.ground) scene.ground = groundOf(options.lights, scene);
+    const std::string& plate = options.lights.plate;
+    if (renamed(loaded.background_name, plate.empty() ? options.picture.background : plate)) {
+        scene.background = plate.empty() ? backgroundOf(session, loaded.background_name)
+                                         : Background(plateOf(session, loaded.background_name));
     }
     return changed;
 }
@@ -113,6 +120,7 @@ Frame drawFrame(Session& session, const RenderOptions& options, const FramePlace
     }
     const Camera camera = cameraOf(options.camera, place, drawing.frame, drawing.loaded.cameras);
     Frame frame{session.stage("draw", [&] { return drawing.renderer->render(camera); }), {}};
+    if (!scene.lights.empty()) reportLights(session, drawing.renderer->lightCounts());
     if (!options.picture.aovs.empty()) {
         frame.aovs = session.stage("aov", [&] {
             return aovChannels(options.picture, drawing.renderer->renderAovs(camera));
@@ -158,7 +166,7 @@ void drawSequence(Session& session, const RenderOptions& options, const WriteOpt
 void requireSound(const RenderOptions& options) {
     requireFrames(options.frames, options.output.output);
     requireFitting(options.display, options.output, options.frames.count());
-    materialOf(options.material, {});
+    requireLightUse(options.lights, materialOf(options.material, {}), options.picture);
     if (!options.picture.aovs.empty()) requireExr(options.output, "--aov");
     if (options.camera.of_file.empty()) {
         const FrameOptions& frame = options.picture.frame;
@@ -174,6 +182,15 @@ void runRender(const RenderOptions& options) {
     const WriteOptions how = writeOptions(options.output, options.common);
     requireSound(options);
     FrameOptions frame = options.picture.frame;
+    frame.shadow_size = options.lights.shadow_size.value_or(0);
+    std::optional<Image> plate; // of the first frame, whose size all frames have
+    const std::string plate_name =
+        nameOfFrame(options.lights.plate, options.frames, {options.frames.first, 0, 1});
+    if (!plate_name.empty() && !options.picture.size_given) {
+        plate = plateOf(session, plate_name);
+        frame.width = plate->width;
+        frame.height = plate->height;
+    }
     if (!options.shader_folder.empty()) frame.shader_folder = options.shader_folder;
     const EglContext context = session.stage("context", [&] { return contextOf(options.device); });
     if (options.common.verbose) {
@@ -185,6 +202,10 @@ void runRender(const RenderOptions& options) {
     session.results()["device"] = context.description();
 
     Drawing drawing{context, frame};
+    if (plate) {
+        drawing.loaded.background_name = plate_name;
+        drawing.loaded.scene.background = std::move(*plate);
+    }
     PictureDisplay display(session, context, options.display, frame.shader_folder);
     if (options.frames.told) {
         drawSequence(session, options, how, drawing, display);
@@ -219,6 +240,7 @@ Command bindRender(CLI::App& root) {
         ->group("Material");
     bindCamera(*app, options->camera, options->frames);
     bindPicture(*app, options->picture);
+    bindLightOptions(*app, options->lights);
     bindFrames(*app, options->frames);
     bindDisplay(*app, options->display);
     bindImageOutput(*app, options->output);

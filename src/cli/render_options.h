@@ -5,6 +5,8 @@
 #include "cli/frame_range.h"
 #include "cli/session.h"
 
+#include "lights/cut_lights.h"
+#include "lights/scene_light.h"
 #include "render/object_file.h"
 #include "render/renderer.h"
 
@@ -77,6 +79,7 @@ void overrideSurfaces(const MaterialArguments& arguments, Object& object);
 struct PictureArguments {
     std::string background = "probe";
     FrameOptions frame;
+    bool size_given = false;
     std::vector<std::string> aovs; ///< normal, depth, id
 };
 /// `--size`, `--samples`, `--background`, `--aov`.
@@ -85,5 +88,31 @@ void bindPicture(CLI::App& app, PictureArguments& arguments);
 std::vector<ExtraChannel> aovChannels(const PictureArguments& arguments, FrameAovs aovs);
 /// The background of that name: the arguments' own, or a frame's.
 Background backgroundOf(Session& session, const std::string& name);
+
+struct LightArguments {
+    std::string lights; ///< a number, a file, or nothing
+    std::optional<LightMethod> method;
+    std::optional<int> shadow_size;
+    bool ground = false;
+    std::optional<double> ground_height;
+    std::optional<V3d> ground_albedo;
+    std::string plate;
+};
+/// `--lights`, `--light-method`, `--shadow-size`, `--ground`, `--ground-height`, `--ground-albedo`,
+/// `--plate`; after bindPicture().
+void bindLightOptions(CLI::App& app, LightArguments& arguments);
+/// Throws Error (usage) for lights that light nothing, for what needs lights and has none, and for
+/// a number that is none of lights; for an albedo of the ground where nothing is behind it.
+void requireLightUse(const LightArguments& arguments, const Material& material,
+                     const PictureArguments& picture);
+/// Whether `--lights` asks for as many lights cut from the probe, and names no file.
+bool isLightCount(const std::string& text);
+/// The lights of that number or file: the arguments' own or a frame's.
+std::vector<SceneLight> lightsOf(Session& session, const LightArguments& arguments,
+                                 const std::string& name, const Panorama& probe);
+/// Where nothing else is told it lies under the object as it stands.
+std::optional<Ground> groundOf(const LightArguments& arguments, const Scene& scene);
+Image plateOf(Session& session, const std::string& name);
+void reportLights(Session& session, const LightCounts& counts);
 
 } // namespace ibl

@@ -111,7 +111,11 @@ Background backgroundOf(Session& session, const std::string& name) {
 
 void bindPicture(CLI::App& app, PictureArguments& arguments) {
     app.add_option_function<std::string>(
-           "--size", [&arguments](const std::string& text) { parseSize(text, arguments.frame); },
+           "--size",
+           [&arguments](const std::string& text) {
+               parseSize(text, arguments.frame);
+               arguments.size_given = true;
+           },
            "Width and height in pixels (default 512x512)")
         ->type_name("WxH")
         ->group("Picture");

@@ -73,7 +73,7 @@ LitTree cutProbe(const Image& latlong, const LuminousEnergy& energy, LightMethod
 }
 
 std::vector<Light> lightsAfter(const LitTree& cuts, const std::vector<RegionSums>& sums,
-                               std::size_t count, const Image& latlong, Placement placement) {
+                               std::size_t count, const Image& latlong, LightPlacement placement) {
     std::vector<RegionSums> leaf_sums;
     std::vector<PixelRegion> regions;
     std::vector<bool> is_lit;

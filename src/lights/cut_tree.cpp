@@ -58,7 +58,7 @@ PixelRegion pixelRegion(const AngularRegion& region, int width, int height) {
 }
 
 Light lightOf(const RegionSums& sums, const PixelRegion& region, int width, int height,
-              Placement placement) {
+              LightPlacement placement) {
     Light light;
     light.irradiance = sums.irradiance;
     light.solid_angle = sums.solid_angle;
@@ -66,15 +66,16 @@ Light lightOf(const RegionSums& sums, const PixelRegion& region, int width, int 
     const V3d centroid = sums.energy > 0 ? sums.moment / sums.energy : V3d(0);
     // A centroid near the sphere's centre points nowhere: take the middle of the region.
     const double length = centroid.length();
-    light.direction = placement == Placement::centroid && length > 1e-9 ? centroid / length
-                                                                        : middleOf(*light.region);
+    light.direction = placement == LightPlacement::centroid && length > 1e-9
+                          ? centroid / length
+                          : middleOf(*light.region);
     return light;
 }
 
 std::vector<Light> lightsOf(const std::vector<RegionSums>& sums,
                             const std::vector<PixelRegion>& regions,
                             const std::vector<bool>& is_lit, int width, int height,
-                            Placement placement) {
+                            LightPlacement placement) {
     std::vector<Light> lights;
     std::vector<Light> dark;
     for (std::size_t i = 0; i < regions.size(); ++i) {

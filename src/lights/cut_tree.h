@@ -52,12 +52,12 @@ struct RegionSums {
 std::vector<RegionSums> regionSums(const Image& latlong, const std::vector<PixelRegion>& regions,
                                    int threads);
 
-enum class Placement { centroid, centre };
+enum class LightPlacement { centroid, centre };
 
 /// The light of a region of a width x height lat-long, at its energy centroid or at the middle of
 /// its rectangle (as Debevec 2005 has it).
 Light lightOf(const RegionSums& sums, const PixelRegion& region, int width, int height,
-              Placement placement);
+              LightPlacement placement);
 
 /// A light for each region that has energy (`is_lit`). What colour a region without luminance has
 /// all the same (negative pixels, radiance below the table's resolution) goes to the nearest light,
@@ -65,7 +65,7 @@ Light lightOf(const RegionSums& sums, const PixelRegion& region, int width, int 
 std::vector<Light> lightsOf(const std::vector<RegionSums>& sums,
                             const std::vector<PixelRegion>& regions,
                             const std::vector<bool>& is_lit, int width, int height,
-                            Placement placement);
+                            LightPlacement placement);
 
 /// The rectangle's longitudes and latitudes.
 AngularRegion angularRegion(const PixelRegion& region, int width, int height);

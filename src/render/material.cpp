@@ -11,18 +11,70 @@ constexpr double kNoLimit = std::numeric_limits<float>::max();
 constexpr std::array<ParameterInfo, kParameters> kTable{{
     {Parameter::baseColor, "base-color", 3, 1, 0, kNoLimit, "Tint or albedo"},
     {Parameter::reflectivity, "reflectivity", 1, 0.5, 0, 1, "Part of the light that is mirrored"},
+    {Parameter::ambient, "ambient", 3, 0, 0, kNoLimit,
+     "Radiance from all sides beside the lights, reflected by the base colour"},
+    {Parameter::specularColor, "specular-color", 3, 1, 0, 1, "Tint of the lobe"},
+    {Parameter::f0, "f0", 3, 0.04, 0, 1, "Reflectance at normal incidence"},
+    {Parameter::exponent, "exponent", 1, 50, 1, 1e5, "Of the lobe's cosine"},
+    {Parameter::exponentU, "exponent-u", 1, 20, 1, 1e5, "Of the lobe around the vertical axis"},
+    {Parameter::exponentV, "exponent-v", 1, 200, 1, 1e5, "Of the lobe along the vertical"},
+    {Parameter::sigma, "sigma", 1, 25, 0, 90, "Deviation of the facets' slopes, degrees"},
+    {Parameter::slope, "slope", 1, 0.25, 0.02, 2, "Root mean square slope of the facets"},
+    {Parameter::alphaU, "alpha-u", 1, 0.4, 0.01, 2, "Width of the lobe around the vertical axis"},
+    {Parameter::alphaV, "alpha-v", 1, 0.1, 0.01, 2, "Width of the lobe along the vertical"},
+    {Parameter::lobeX, "lobe-x", 1, -1, -1, 1, "The lobe's factor around the vertical axis"},
+    {Parameter::lobeY, "lobe-y", 1, -1, -1, 1, "The lobe's factor along the vertical"},
+    {Parameter::lobeZ, "lobe-z", 1, 1, 0, 1, "The lobe's factor along the normal"},
+    {Parameter::facetRoughness, "facet-roughness", 1, 0.1, 0.001, 1, "Schlick's r"},
 }};
 
 constexpr auto kMirrorParameters = {Parameter::baseColor};
 constexpr auto kMirrorDiffuseParameters = {Parameter::baseColor, Parameter::reflectivity};
+constexpr auto kLambertParameters = {Parameter::baseColor, Parameter::ambient};
+constexpr auto kPhongParameters = {Parameter::baseColor, Parameter::specularColor,
+                                   Parameter::reflectivity, Parameter::exponent,
+                                   Parameter::ambient};
+constexpr auto kOrenNayarParameters = {Parameter::baseColor, Parameter::sigma, Parameter::ambient};
+constexpr auto kCookTorranceParameters = {Parameter::baseColor, Parameter::f0,
+                                          Parameter::reflectivity, Parameter::slope,
+                                          Parameter::ambient};
+constexpr auto kWardParameters = {Parameter::baseColor,    Parameter::specularColor,
+                                  Parameter::reflectivity, Parameter::alphaU,
+                                  Parameter::alphaV,       Parameter::ambient};
+constexpr auto kAshikhminShirleyParameters = {Parameter::baseColor, Parameter::f0,
+                                              Parameter::exponentU, Parameter::exponentV,
+                                              Parameter::ambient};
+constexpr auto kLafortuneParameters = {
+    Parameter::baseColor, Parameter::specularColor, Parameter::reflectivity, Parameter::exponent,
+    Parameter::lobeX,     Parameter::lobeY,         Parameter::lobeZ,        Parameter::ambient};
+constexpr auto kSchlickParameters = {Parameter::baseColor, Parameter::f0, Parameter::facetRoughness,
+                                     Parameter::ambient};
 
-constexpr std::array<ShaderInfo, 3> kShaders{{
+constexpr std::array<ShaderInfo, 12> kShaders{{
     {Shader::mirror, "mirror", "mirror.frag",
      "base colour times the radiance along the reflected ray", true, false, kMirrorParameters},
     {Shader::diffuse, "diffuse", "diffuse.frag", "base colour times irradiance / pi", false, true,
      kMirrorParameters},
     {Shader::mirrorDiffuse, "mirror-diffuse", "mirror_diffuse.frag",
      "the two mixed by the reflectivity", true, true, kMirrorDiffuseParameters},
+    {Shader::lambert, "lambert", "lambert.frag", "under lights: diffuse", false, false,
+     kLambertParameters, true},
+    {Shader::phong, "phong", "phong.frag", "under lights: a lobe about the mirrored light", false,
+     false, kPhongParameters, true},
+    {Shader::blinnPhong, "blinn-phong", "blinn_phong.frag",
+     "under lights: a lobe about the halfway vector", false, false, kPhongParameters, true},
+    {Shader::orenNayar, "oren-nayar", "oren_nayar.frag", "under lights: rough diffuse facets",
+     false, false, kOrenNayarParameters, true},
+    {Shader::cookTorrance, "cook-torrance", "cook_torrance.frag", "under lights: mirroring facets",
+     false, false, kCookTorranceParameters, true},
+    {Shader::ward, "ward", "ward.frag", "under lights: brushed", false, false, kWardParameters,
+     true},
+    {Shader::ashikhminShirley, "ashikhmin-shirley", "ashikhmin_shirley.frag",
+     "under lights: brushed, over a diffuse base", false, false, kAshikhminShirleyParameters, true},
+    {Shader::lafortune, "lafortune", "lafortune.frag",
+     "under lights: a lobe that may lean or shine back", false, false, kLafortuneParameters, true},
+    {Shader::schlickFresnel, "schlick-fresnel", "schlick_fresnel.frag",
+     "under lights: Schlick's approximations", false, false, kSchlickParameters, true},
 }};
 
 } // namespace

@@ -20,10 +20,37 @@ enum class Shader {
     mirror,        ///< c L(r)
     diffuse,       ///< c E(n) / pi: c is the albedo
     mirrorDiffuse, ///< (1 - k) c E(n) / pi + k L(r)
+    // Under lights, by the BRDFs of their files.
+    lambert,
+    phong,
+    blinnPhong,
+    orenNayar,
+    cookTorrance,
+    ward,
+    ashikhminShirley,
+    lafortune,
+    schlickFresnel,
 };
 
-enum class Parameter { baseColor, reflectivity };
-constexpr std::size_t kParameters = 2;
+enum class Parameter {
+    baseColor,
+    reflectivity,
+    ambient,
+    specularColor,
+    f0,
+    exponent,
+    exponentU,
+    exponentV,
+    sigma,
+    slope,
+    alphaU,
+    alphaV,
+    lobeX,
+    lobeY,
+    lobeZ,
+    facetRoughness,
+};
+constexpr std::size_t kParameters = 16;
 
 /// A parameter of shaders: the option `--name` and, with underscores, the uniform.
 struct ParameterInfo {
@@ -46,6 +73,7 @@ struct ShaderInfo {
     bool reads_probe;
     bool reads_diffuse;
     std::initializer_list<Parameter> parameters;
+    bool lit = false; ///< by the scene's lights; the file defines a BRDF
 };
 std::span<const ShaderInfo> shaderTable();
 const ShaderInfo& shaderInfo(Shader shader);

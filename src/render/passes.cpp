@@ -18,7 +18,7 @@ const Program& Passes::program(const std::vector<std::string_view>& files,
     for (const std::string& definition : definitions)
         key.append("\n").append(definition);
     Program& program = programs_[key];
-    if (!program) program = makeProgram({"fullscreen.vert", files, definitions, source}, folder_);
+    if (!program) program = makeProgram({{"fullscreen.vert"}, files, definitions, source}, folder_);
     return program;
 }
 

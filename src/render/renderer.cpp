@@ -1,6 +1,8 @@
 #include "render/renderer.h"
 
 #include "core/error.h"
+#include "render/light_choice.h"
+#include "render/lighting.h"
 #include "render/mesh_buffers.h"
 #include "render/panorama_texture.h"
 #include "render/sample_pattern.h"
@@ -24,6 +26,14 @@ constexpr int kTileWidth = 2048, kTileHeight = 2048;
 
 Error usage(const std::string& problem) {
     return {ExitCode::usage, "render: " + problem};
+}
+
+int shadowSize(const FrameOptions& options) {
+    if (options.shadow_size > 0) return options.shadow_size;
+    int size = 256;
+    while (size < 2048 && 4 * size < 3 * options.height)
+        size *= 2;
+    return size;
 }
 
 void setView(const Program& program, const CameraRays& rays, const V2i& tile, const V2d& jitter) {
@@ -67,29 +77,45 @@ struct Renderer::State {
     std::optional<MeshBuffers> mesh;
 
     VertexArray no_vertices;
-    Program surface, background, accumulate, resolve;
+    std::optional<Lighting> lighting;
+    std::optional<Ground> ground;
+    bool lit = false;
+    const Scene* light_scene = nullptr; ///< of which `lighting` chooses lights
+
+    Program surface, under_lights, ground_shadow, background, accumulate, resolve;
     Program aov; ///< when first asked for
     // One tile: a sample, the sum of samples, and the picture as it is read.
     Texture sample, sum, mean;
     Renderbuffer depth;
     Framebuffer to_sample, to_sum, to_mean;
+    std::array<Texture, 4> lit_points; ///< points, normals, facets' normals, colours
+    Framebuffer to_points;             ///< these, with `sample` and its depth
+    Texture kept;                      ///< from the ground
+    Framebuffer to_kept;
 
     std::vector<std::string> mapDefinitions() const;
     Program surfaceProgram(std::string_view shader) const;
     void uploadScene(const Scene& scene);
     void makePrograms(const Scene& scene);
+    void makeBackground(const Scene& scene);
+    void makeGround();
     void setMaterial(const Material& material);
     void place(const Turn& turn, const Placement& placement);
     void makeTargets();
+    void makePointTargets(const V2i& size);
 
     V2i tileSize() const;
     void drawFullscreen(const Program& program) const;
-    void drawSample(const CameraRays& rays, const V2i& tile, const V2d& jitter) const;
+    void lightSurface(const CameraRays& rays, const V2i& tile, const V2d& jitter, int batch) const;
+    void drawGroundShadow(const CameraRays& rays, const V2i& tile, const V2d& jitter,
+                          int batch) const;
+    void drawSample(const CameraRays& rays, const V2i& tile, const V2d& jitter, int batch) const;
     void drawSphere(const Program& program, const CameraRays& rays, const V2i& tile) const;
     void drawObject(const Program& program, const CameraRays& rays, const V2i& tile,
                     const V2d& jitter) const;
     void drawMesh(const Program& program, const CameraRays& rays, const V2d& jitter) const;
-    void drawTile(const CameraRays& rays, const V2i& tile) const;
+    void drawTile(const CameraRays& rays, const V2i& tile);
+    void placeLights(const CameraRays& rays);
     void drawFrame(const Camera& camera, Image& frame);
     void drawAovs(const Camera& camera, FrameAovs& aovs);
 };
@@ -115,12 +141,27 @@ void Renderer::State::uploadScene(const Scene& scene) {
     parts = partsOf(scene.object);
     surfaces = uploadSurfaces(scene.object);
     if (scene.object.mesh) mesh = uploadMesh(*scene.object.mesh);
+    lit = shaderInfo(scene.material.shader).lit;
+    ground = scene.ground;
+    if (!lit && !ground) return;
+    if (scene.lights.empty()) throw usage("nothing lights the picture; give lights");
+    light_scene = &scene;
+    lighting.emplace(scene, shadowSize(options), options.shader_folder);
 }
 
 std::vector<std::string> Renderer::State::mapDefinitions() const {
     std::vector<std::string> definitions = probe.definitions("PROBE");
     for (const std::string& d : diffuse.definitions("DIFFUSE"))
         definitions.push_back(d);
+    const auto define = [&](const std::vector<std::string>& more) {
+        definitions.insert(definitions.end(), more.begin(), more.end());
+    };
+    if (lighting) define(lighting->definitions());
+    if (ground) {
+        define({"GROUND_ALBEDO " + std::to_string(ground->albedo.has_value()),
+                "GROUND_ALPHA " + std::to_string(!opaque)});
+    }
+    define({"KEEP_POSITIVE " + std::to_string(ground && ground->albedo)});
     return definitions;
 }
 
@@ -129,7 +170,7 @@ Program Renderer::State::surfaceProgram(std::string_view shader) const {
     std::vector<std::string> definitions = mapDefinitions();
     for (const std::string& d : surfaces.definitions)
         definitions.push_back(d);
-    return makeProgram({mesh ? "mesh.vert" : "fullscreen.vert",
+    return makeProgram({{mesh ? "mesh.vert" : "fullscreen.vert"},
                         {"view.glsl", "lookup.glsl", "maps.glsl", "surface.glsl", shader,
                          mesh ? "mesh_surface.frag" : "sphere_surface.frag"},
                         definitions,
@@ -139,17 +180,19 @@ Program Renderer::State::surfaceProgram(std::string_view shader) const {
 
 void Renderer::State::makePrograms(const Scene& scene) {
     const auto program = [&](std::vector<std::string_view> fragment) {
-        return makeProgram({"fullscreen.vert", std::move(fragment), mapDefinitions(), {}},
+        return makeProgram({{"fullscreen.vert"}, std::move(fragment), mapDefinitions(), {}},
                            options.shader_folder);
     };
-    surface = surfaceProgram(shaderInfo(scene.material.shader).file);
-    if (std::holds_alternative<ProbeBackground>(scene.background)) {
-        background = program({"view.glsl", "lookup.glsl", "maps.glsl", "background_probe.frag"});
-    } else if (image) {
-        background = program({"background_image.frag"});
+    const std::string_view file = shaderInfo(scene.material.shader).file;
+    surface = surfaceProgram(lit ? "lit_points.glsl" : file);
+    if (lit) {
+        under_lights = program(
+            {"view.glsl", "light_blocks.glsl", "lights.glsl", "tangent.glsl", file, "lit.frag"});
     }
+    makeBackground(scene);
+    if (ground) makeGround();
     resolve = program({"resolve.frag"});
-    if (options.samples > 1) accumulate = program({"accumulate.frag"});
+    if (options.samples > 1 || lighting) accumulate = program({"accumulate.frag"});
     // Each sample goes into the sum by the weight 2^-k, where 2^k >= samples.
     const double weight = std::exp2(-std::ceil(std::log2(options.samples)));
     if (accumulate) setUniform(accumulate, "weight", weight);
@@ -158,8 +201,54 @@ void Renderer::State::makePrograms(const Scene& scene) {
     place(scene.turn, scene.placement);
 }
 
+void Renderer::State::makeBackground(const Scene& scene) {
+    std::vector<std::string_view> files{"view.glsl", "lookup.glsl", "maps.glsl"};
+    if (std::holds_alternative<ProbeBackground>(scene.background)) {
+        files.push_back("background_probe.glsl");
+    } else if (image) {
+        files.push_back("background_image.glsl");
+    } else if (ground) {
+        files.push_back("background_plain.glsl");
+    } else {
+        return;
+    }
+    if (ground) {
+        for (const std::string_view file : {"light_blocks.glsl", "lights.glsl", "ground.glsl"})
+            files.push_back(file);
+    }
+    files.push_back(ground ? "ground.frag" : "background.frag");
+    background =
+        makeProgram({{"fullscreen.vert"}, files, mapDefinitions(), {}}, options.shader_folder);
+}
+
+void Renderer::State::makeGround() {
+    setUniform(background, "plain_color", V3d(clear_color));
+    setUniform(background, "plain_alpha", opaque ? 1.0 : 0.0);
+    setUniform(background, "ground_height", ground->height);
+    if (ground->albedo) setUniform(background, "ground_albedo", *ground->albedo);
+    ground_shadow = makeProgram(
+        {{"light_blocks.glsl", "ground_shadow.vert"},
+         {"view.glsl", "light_blocks.glsl", "lights.glsl", "ground.glsl", "ground_shadow.frag"},
+         mapDefinitions(),
+         {}},
+        options.shader_folder);
+    setUniform(ground_shadow, "ground_height", ground->height);
+    setUniform(ground_shadow, "map_size", V2d(lighting->mapSize()));
+}
+
 void Renderer::State::place(const Turn& turn, const Placement& placement) {
     similarity = similarityOf(placement, extent);
+    if (lighting) {
+        lighting->place(*light_scene, turn, similarity);
+        const double lowest = lowestPoint(light_scene->object, placement);
+        if (ground && ground->height > lowest + 1e-5 * similarity.scale * extent.radius)
+            throw usage("the ground cuts the object; lower it to " + std::to_string(lowest));
+    }
+    if (lit) {
+        const M33d& t = similarity.turn;
+        setUniform(under_lights, "object_right", V3d(t[0][0], t[0][1], t[0][2]));
+        setUniform(under_lights, "object_up", V3d(t[1][0], t[1][1], t[1][2]));
+    }
     const M33d probe_from_world = turnMatrix(turn).transposed();
     setUniform(surface, "probe_from_world", probe_from_world);
     if (background) setUniform(background, "probe_from_world", probe_from_world);
@@ -172,10 +261,13 @@ void Renderer::State::setMaterial(const Material& of_object) {
         std::string uniform(info.name);
         std::ranges::replace(uniform, '-', '_');
         const V3d& value = material[parameter];
-        if (info.components == 3) {
-            setUniform(surface, uniform.c_str(), value);
-        } else {
-            setUniform(surface, uniform.c_str(), value.x);
+        for (const Program* program : {&surface, &under_lights}) {
+            if (!*program) continue;
+            if (info.components == 3) {
+                setUniform(*program, uniform.c_str(), value);
+            } else {
+                setUniform(*program, uniform.c_str(), value.x);
+            }
         }
     }
 }
@@ -189,15 +281,32 @@ void Renderer::State::makeTargets() {
     depth = makeRenderbuffer(GL_DEPTH_COMPONENT32F, size.x, size.y);
     sample = makeTexture(GL_TEXTURE_2D, GL_RGBA32F, size.x, size.y);
     to_sample = makeFramebuffer(sample, depth.id());
-    if (options.samples > 1) {
+    if (accumulate) {
         sum = makeTexture(GL_TEXTURE_2D, GL_RGBA32F, size.x, size.y);
         to_sum = makeFramebuffer(sum);
+    }
+    if (lit) makePointTargets(size);
+    if (ground) {
+        kept = makeTexture(GL_TEXTURE_2D, GL_RGBA32F, size.x, size.y);
+        to_kept = makeFramebuffer(kept);
     }
     mean = makeTexture(GL_TEXTURE_2D, GL_RGBA32F, size.x, size.y);
     to_mean = makeFramebuffer(mean);
     GLuint array = 0;
     glCreateVertexArrays(1, &array);
     no_vertices = VertexArray(array);
+}
+
+void Renderer::State::makePointTargets(const V2i& size) {
+    to_points = makeFramebuffer(sample, depth.id());
+    std::array<GLenum, 5> buffers{GL_COLOR_ATTACHMENT0};
+    for (std::size_t i = 0; i < lit_points.size(); ++i) {
+        lit_points[i] = makeTexture(GL_TEXTURE_2D, GL_RGBA32F, size.x, size.y);
+        buffers[i + 1] = GL_COLOR_ATTACHMENT1 + static_cast<GLenum>(i);
+        glNamedFramebufferTexture(to_points.id(), buffers[i + 1], lit_points[i].id(), 0);
+    }
+    glNamedFramebufferDrawBuffers(to_points.id(), static_cast<GLsizei>(buffers.size()),
+                                  buffers.data());
 }
 
 void Renderer::State::drawFullscreen(const Program& program) const {
@@ -216,6 +325,7 @@ void Renderer::State::drawSphere(const Program& program, const CameraRays& rays,
     setUniform(program, "moment_x", brought.eye.cross(rays.step_x));
     setUniform(program, "moment_y", brought.eye.cross(rays.step_y));
     setUniform(program, "sphere_radius", similarity.scale);
+    setUniform(program, "sphere_centre", similarity.shift);
     setUniform(program, "object_from_world", similarity.turn.transposed());
     const PixelRect rect = unitSphereRect(brought, options.width, options.height);
     glScissor(rect.min.x - tile.x, rect.min.y - tile.y, rect.max.x - rect.min.x,
@@ -259,47 +369,111 @@ void Renderer::State::drawObject(const Program& program, const CameraRays& rays,
     drawSphere(program, rays, tile);
 }
 
+// Adds the batch's lights to the object's samples: a full-screen pass behind nothing but them.
+void Renderer::State::lightSurface(const CameraRays& rays, const V2i& tile, const V2d& jitter,
+                                   int batch) const {
+    setView(under_lights, rays, tile, jitter);
+    lighting->setUniforms(under_lights, batch, jitter);
+    for (GLuint i = 0; i < lit_points.size(); ++i)
+        glBindTextureUnit(4 + i, lit_points[i].id());
+    glDepthFunc(GL_GREATER);
+    glDepthMask(GL_FALSE);
+    glEnable(GL_BLEND);
+    drawFullscreen(under_lights);
+    glDisable(GL_BLEND);
+    glDepthMask(GL_TRUE);
+    glDepthFunc(GL_LEQUAL);
+}
+
+// What the batch's lights are kept from shining on the ground, light by light where its map lies.
+void Renderer::State::drawGroundShadow(const CameraRays& rays, const V2i& tile, const V2d& jitter,
+                                       int batch) const {
+    glBindFramebuffer(GL_FRAMEBUFFER, to_kept.id());
+    const std::array<float, 4> nothing{};
+    glClearBufferfv(GL_COLOR, 0, nothing.data());
+    setView(ground_shadow, rays, tile, jitter);
+    lighting->setUniforms(ground_shadow, batch, jitter);
+    setUniform(ground_shadow, "eye", rays.eye);
+    // Whatever box is before the eye: depth is not used.
+    const V3f ahead(rays.eye + rays.forward);
+    setUniform(ground_shadow, "clip_from_world", *clipFromWorld(rays, {ahead, ahead}, jitter));
+    glEnable(GL_CLIP_DISTANCE0);
+    glEnable(GL_BLEND);
+    glUseProgram(ground_shadow.id());
+    glBindVertexArray(no_vertices.id());
+    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, lighting->viewCount(batch));
+    glDisable(GL_BLEND);
+    glDisable(GL_CLIP_DISTANCE0);
+    glBindTextureUnit(9, kept.id());
+}
+
 // One sample a pixel of a tile. `jitter` is the sample's place from the pixel's centre. The
-// background comes last, at the far plane, so that it is looked up only where it is seen.
-void Renderer::State::drawSample(const CameraRays& rays, const V2i& tile, const V2d& jitter) const {
-    glBindFramebuffer(GL_FRAMEBUFFER, to_sample.id());
+// background comes last, at the far plane, so that it is looked up only where it is seen. Batches
+// after the first add what their lights give, and no alpha.
+void Renderer::State::drawSample(const CameraRays& rays, const V2i& tile, const V2d& jitter,
+                                 int batch) const {
     glViewport(-tile.x, -tile.y, options.width, options.height);
-    if (!background) {
-        const std::array<float, 4> color{clear_color.x, clear_color.y, clear_color.z,
-                                         opaque ? 1.f : 0.f};
+    if (ground) drawGroundShadow(rays, tile, jitter, batch);
+    glBindFramebuffer(GL_FRAMEBUFFER, to_sample.id());
+    if (!background || batch > 0) {
+        const V3f color_behind = batch > 0 ? V3f(0) : clear_color;
+        const std::array<float, 4> color{color_behind.x, color_behind.y, color_behind.z,
+                                         opaque && batch == 0 ? 1.f : 0.f};
         glClearBufferfv(GL_COLOR, 0, color.data());
     }
     const float far_depth = 1;
     glClearBufferfv(GL_DEPTH, 0, &far_depth);
     glEnable(GL_DEPTH_TEST);
+    if (lit) glBindFramebuffer(GL_FRAMEBUFFER, to_points.id());
+    glColorMaski(0, batch == 0, batch == 0, batch == 0, batch == 0);
     setView(surface, rays, tile, jitter);
     drawObject(surface, rays, tile, jitter);
-    if (background) {
+    glColorMaski(0, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glBindFramebuffer(GL_FRAMEBUFFER, to_sample.id());
+    if (lit) lightSurface(rays, tile, jitter, batch);
+    if (background && (batch == 0 || ground)) {
         setView(background, rays, tile, jitter);
         setUniform(background, "tile_origin", tile);
+        if (ground) lighting->setUniforms(background, batch, jitter);
         drawFullscreen(background);
     }
     glDisable(GL_DEPTH_TEST);
 }
 
-// All samples of a tile; they end up in `sum`, or in `sample` when there is but one.
-void Renderer::State::drawTile(const CameraRays& rays, const V2i& tile) const {
+// All samples of a tile under all batches of lights; they end up in `sum`, or in `sample` when
+// there is but one.
+void Renderer::State::drawTile(const CameraRays& rays, const V2i& tile) {
+    const int batches = lighting ? lighting->batchCount() : 1;
     bool first = true;
-    for (const V2d& point : samplePattern(options.samples)) {
-        glBindTextureUnit(0, probe.texture.id());
-        drawSample(rays, tile, point - V2d(0.5));
-        if (!accumulate) return;
-        glBindFramebuffer(GL_FRAMEBUFFER, to_sum.id());
-        glBindTextureUnit(0, sample.id());
-        if (!first) glEnable(GL_BLEND);
-        drawFullscreen(accumulate);
-        glDisable(GL_BLEND);
-        first = false;
+    for (int batch = 0; batch < batches; ++batch) {
+        if (lighting) lighting->use(batch, mesh ? &*mesh : nullptr);
+        for (const V2d& point : samplePattern(options.samples)) {
+            glBindTextureUnit(0, probe.texture.id());
+            drawSample(rays, tile, point - V2d(0.5), batch);
+            if (!accumulate) return;
+            glBindFramebuffer(GL_FRAMEBUFFER, to_sum.id());
+            glBindTextureUnit(0, sample.id());
+            if (!first) glEnable(GL_BLEND);
+            drawFullscreen(accumulate);
+            glDisable(GL_BLEND);
+            first = false;
+        }
     }
+}
+
+void Renderer::State::placeLights(const CameraRays& rays) {
+    if (!lighting) return;
+    if (ground && rays.eye.y <= ground->height)
+        throw usage("the camera stands below the ground, which is seen from above; raise it");
+    lighting->chooseLights(*light_scene, rays.eye);
+    if (!ground) return;
+    setUniform(background, "eye", rays.eye);
+    setUniform(background, "ground_irradiance", lighting->groundIrradiance());
 }
 
 void Renderer::State::drawFrame(const Camera& camera, Image& frame) {
     const CameraRays rays = cameraRays(camera, options.width, options.height);
+    placeLights(rays);
     const V2i size = tileSize();
     setUpDrawing(options.width);
     glBindTextureUnit(1, diffuse.texture.id());
@@ -386,6 +560,10 @@ Image Renderer::render(const Camera& camera) {
     Image frame(state_->options.width, state_->options.height, state_->opaque ? 3 : 4);
     state_->drawFrame(camera, frame);
     return frame;
+}
+
+LightCounts Renderer::lightCounts() const {
+    return state_->lighting ? state_->lighting->counts() : LightCounts{};
 }
 
 FrameAovs Renderer::renderAovs(const Camera& camera) {

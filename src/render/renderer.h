@@ -18,6 +18,9 @@ struct FrameOptions {
     int height = 512;
     int samples = 16; ///< shaded samples a pixel; the picture is their mean (a box of one pixel)
     std::optional<std::filesystem::path> shader_folder; ///< replaces built-in shaders, file by file
+    /// Texels a side of shadow maps; 0: the power of two that is at least 3/4 of the frame's
+    /// height, 256 to 2048.
+    int shadow_size = 0;
 };
 
 /// What is known of a frame beside its colours, at the centre of each pixel: nothing of it is
@@ -29,11 +32,13 @@ struct FrameAovs {
 };
 constexpr float kNoDepth = 1e10F;
 
-/// A scene on the graphics device, ready to be drawn. The context must be current and outlive it.
+/// A scene on the graphics device, ready to be drawn. The context must be current and outlive it,
+/// and so must a scene with lights.
 ///
 /// Throws Error: usage for frames the device cannot draw (a side over its limit, samples < 1), for
-/// a background image of another size and for a missing map; input for shaders from the folder that
-/// do not compile, with file and line, and for probes larger than the device's textures.
+/// a background image of another size, for a missing map, for lit materials and grounds without
+/// lights and for a ground that cuts the object; input for shaders from the folder that do not
+/// compile, with file and line, and for probes larger than the device's textures.
 class Renderer {
 public:
     Renderer(const EglContext& context, const Scene& scene, const FrameOptions& options);
@@ -46,7 +51,11 @@ public:
     void change(const Material& material, const Turn& turn, const Placement& placement);
 
     /// Scene-linear pixels: RGBA, premultiplied, when the scene has no background, otherwise RGB.
+    /// Throws Error (usage) for a camera below the ground.
     Image render(const Camera& camera);
+
+    /// What became of the lights in the picture drawn last.
+    LightCounts lightCounts() const;
 
     FrameAovs renderAovs(const Camera& camera);
 

@@ -2,12 +2,15 @@
 #pragma once
 
 #include "image/image.h"
+#include "lights/scene_light.h"
 #include "panorama/panorama.h"
 #include "render/material.h"
 #include "render/mesh.h"
 #include "render/placement.h"
 
+#include <optional>
 #include <variant>
+#include <vector>
 
 namespace ibl {
 
@@ -18,6 +21,26 @@ using ColorBackground = V3f;   ///< linear radiance
 using ImageBackground = Image; ///< linear radiance, 3 channels, of the frame's own size
 using Background = std::variant<ProbeBackground, NoBackground, ColorBackground, ImageBackground>;
 
+/// A horizontal plane, without end and seen from above, that shows the object's shadow and nothing
+/// else: what is behind the object is what it looks like without the object (differential
+/// rendering, Debevec 1998). It casts no shadow: what lights the object from below is taken as
+/// light that the ground sends there.
+struct Ground {
+    double height = -1; ///< y; no part of the object lies below
+    /// With it, the light that the object takes away is E albedo / pi; without it, the ground
+    /// reflects as it looks in each pixel: the background is scaled by the irradiance with over
+    /// that without the object.
+    std::optional<V3d> albedo;
+};
+
+/// What became of the scene's lights in a picture.
+struct LightCounts {
+    int given = 0;
+    int drawn = 0;
+    int black = 0;  ///< not drawn: without strength
+    int unseen = 0; ///< not drawn: behind all that is seen
+};
+
 /// All that is uploaded once and drawn from any number of cameras. What the picture does not need
 /// may be absent: a diffuse object before no probe needs no probe, a mirror no diffuse map.
 struct Scene {
@@ -26,6 +49,8 @@ struct Scene {
     Object object;
     Material material;
     Background background;
+    std::vector<SceneLight> lights; ///< of lit materials and of the ground
+    std::optional<Ground> ground;
     Turn turn; ///< of the probe, with all maps made of it
     Placement placement;
 };
@@ -33,5 +58,8 @@ struct Scene {
 /// Whether the scene needs the probe's radiance, and its diffuse map, to be drawn.
 bool needsProbe(const Material& material, const Background& background);
 bool needsDiffuse(const Material& material);
+
+/// The least y of an object that is placed so.
+double lowestPoint(const Object& object, const Placement& placement);
 
 } // namespace ibl

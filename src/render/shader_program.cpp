@@ -93,8 +93,10 @@ Program makeProgram(const ProgramParts& parts, const std::optional<std::filesyst
     for (const std::string_view name : parts.fragment) {
         fragment_files.push_back(readShader(name, folder));
     }
-    const ShaderStage vertex =
-        compile(GL_VERTEX_SHADER, {readShader(parts.vertex, folder)}, parts.definitions);
+    std::vector<SourceFile> vertex_files;
+    for (const std::string_view name : parts.vertex)
+        vertex_files.push_back(readShader(name, folder));
+    const ShaderStage vertex = compile(GL_VERTEX_SHADER, vertex_files, parts.definitions);
     const ShaderStage fragment = compile(GL_FRAGMENT_SHADER, fragment_files, parts.definitions);
 
     Program program(glCreateProgram());

@@ -19,11 +19,11 @@ struct EmbeddedShader {
 };
 std::span<const EmbeddedShader> embeddedShaders();
 
-/// What a program is made of: a vertex shader file, the fragment shader as files that follow one
-/// another, preprocessor definitions ("NAME value") ahead of all, and source text that is in no
+/// What a program is made of: vertex and fragment shader, each as files that follow one another,
+/// preprocessor definitions ("NAME value") ahead of all, and source text that is in no
 /// file, between definitions and fragment shader.
 struct ProgramParts {
-    std::string_view vertex;
+    std::vector<std::string_view> vertex;
     std::vector<std::string_view> fragment;
     std::vector<std::string> definitions;
     std::string source;

@@ -58,7 +58,7 @@ double bruteError(const std::vector<Source>& probe, const std::vector<Light>& li
 }
 
 LightSet lightsOfProbe(const Image& image, LightMethod method, int count,
-                       Placement placement = Placement::centroid) {
+                       LightPlacement placement = LightPlacement::centroid) {
     LightRequest request;
     request.method = method;
     request.count = count;
@@ -100,8 +100,9 @@ TEST(IrradianceError, OneLightOfAnEvenSkyIsAlwaysAsWrong) {
 
 TEST(IrradianceError, CentroidsAreBetterThanCentres) {
     const Image image = noise(128, 64, 32);
-    EXPECT_LT(1.5 * lightsOfProbe(image, LightMethod::median, 64).irradiance_error,
-              lightsOfProbe(image, LightMethod::median, 64, Placement::centre).irradiance_error);
+    EXPECT_LT(
+        1.5 * lightsOfProbe(image, LightMethod::median, 64).irradiance_error,
+        lightsOfProbe(image, LightMethod::median, 64, LightPlacement::centre).irradiance_error);
 }
 
 TEST(IrradianceError, OfALightThatIsTheProbe) {

@@ -1,6 +1,5 @@
 // A picture of the frame's own size, pixel for pixel.
 layout(binding = 2) uniform sampler2D image;
 uniform ivec2 tile_origin;
-out vec4 color;
 
-void main() { color = vec4(texelFetch(image, tile_origin + ivec2(gl_FragCoord.xy), 0).rgb, 1.0); }
+vec4 behind() { return vec4(texelFetch(image, tile_origin + ivec2(gl_FragCoord.xy), 0).rgb, 1.0); }

@@ -1,0 +1,4 @@
+// What is behind the object.
+out vec4 color;
+
+void main() { color = behind(); }

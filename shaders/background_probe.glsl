@@ -1,0 +1,1 @@
+vec4 behind() { return vec4(probeRadiance(viewRay()), 1.0); }

@@ -1,0 +1,81 @@
+// The scene's lights on the device, with their shadow maps. Internal to the render layer.
+#pragma once
+
+#include "render/gl_objects.h"
+#include "render/mesh_buffers.h"
+#include "render/scene.h"
+#include "render/shadow_views.h"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace ibl {
+
+/// Lights are drawn in batches of as many as the shaders' uniform blocks hold; light adds up, so
+/// that a picture is the sum of its batches' pictures. A batch's maps are one texture array, made
+/// anew for each batch, and kept where there is but one.
+class Lighting {
+public:
+    /// The scene's object casts the shadows; the exact sphere needs no maps.
+    /// Throws Error (input) where point or spot lights are among more lights than one batch holds.
+    Lighting(const Scene& scene, int map_size,
+             const std::optional<std::filesystem::path>& shader_folder);
+
+    /// For every program that includes shaders/lights.glsl.
+    std::vector<std::string> definitions() const;
+
+    /// Where the object stands and how the probe, and directional lights with it, is turned.
+    void place(const Scene& scene, const Turn& turn, const Similarity& similarity);
+    /// Chooses the lights that show from there.
+    void chooseLights(const Scene& scene, const V3d& eye);
+    const LightCounts& counts() const { return counts_; }
+    int batchCount() const { return static_cast<int>(batches_.size()); }
+    /// Of the chosen lights: the irradiance of the ground without the object, of directional ones.
+    const V3d& groundIrradiance() const { return ground_irradiance_; }
+
+    /// Makes the batch the one that programs see; draws its maps where they are not there. Leaves
+    /// the frame buffer's binding and the viewport changed.
+    void use(int batch, const MeshBuffers* mesh);
+    /// Sets the uniforms of a program that includes shaders/lights.glsl, for the sample that stands
+    /// `jitter` from its pixel's centre.
+    void setUniforms(const Program& program, int batch, const V2d& jitter) const;
+    /// Maps of the batch, and their size.
+    int viewCount(int batch) const {
+        return static_cast<int>(batches_[static_cast<std::size_t>(batch)].views);
+    }
+    int mapSize() const { return map_size_; }
+
+private:
+    struct Batch {
+        std::size_t first_light, lights, first_view, views;
+    };
+
+    void makeBatches();
+    void uploadLights(const Batch& batch);
+    void drawMaps(const Batch& batch, const MeshBuffers& mesh);
+
+    bool local_ = false; ///< point or spot lights are among them
+    std::vector<SceneLight> turned_;
+    Similarity similarity_;
+    std::vector<V3f> points_; ///< of the mesh, in the world
+    GLsizei index_count_ = 0;
+    Caster caster_;
+    bool maps_needed_; ///< the exact sphere has views, but no maps
+    int map_size_;
+    std::vector<SceneLight> lights_;
+    LightCounts counts_;
+    V3d ground_irradiance_{0};
+    std::vector<ShadowView> views_;   ///< of all lights, one after the other
+    std::vector<std::size_t> starts_; ///< each light's first, and the end
+    std::vector<Batch> batches_;
+    int in_use_ = -1;
+    Program draw_depth_;
+    Texture maps_;
+    GLsizei layers_ = 0;
+    Framebuffer to_layer_;
+    Buffer light_block_, view_block_;
+};
+
+} // namespace ibl
