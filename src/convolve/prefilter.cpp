@@ -24,9 +24,9 @@
 namespace ibl {
 namespace {
 
-/// Relative RMSE that the near kernel's weights leave: measured, not derived. On a courtyard (GGX of
-/// 0.03 into 256-texel faces) 1.7e-5 against a random sum that is itself about as uncertain; on a
-/// lit room (0.05, 64 texels) 4.3e-6 against harmonics to degree 2048, which were sure to 4e-7
+/// Relative RMSE that the near kernel's weights leave: measured, not derived. On a courtyard (GGX
+/// of 0.03 into 256-texel faces) 1.7e-5 against a random sum that is itself about as uncertain; on
+/// a lit room (0.05, 64 texels) 4.3e-6 against harmonics to degree 2048, which were sure to 4e-7
 /// there.
 constexpr double kNearError = 2e-5;
 constexpr double kNoThreshold = std::numeric_limits<double>::infinity();
