@@ -46,6 +46,7 @@ void main() {
     surface_depth = sphere_radius * distance / length(ray);
     if (surface_alpha < alpha_cutoff) discard;
     vec3 normal = inside ? -outward : outward;
+    surface_outside = !inside;
     surface_point = sphere_centre + sphere_radius * outward;
     facet_normal = normal;
     vec3 radiance = shade(normal, incident);

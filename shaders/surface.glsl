@@ -16,6 +16,10 @@ vec3 surface_color, surface_emission;
 float surface_metallic = 1.0, surface_roughness = 1.0;
 float surface_alpha;
 float surface_depth; // along the view
+bool surface_outside; // whether the eye is on the outer side
+// Where the surface is met, in the world, and its facet's unit normal, turned to the eye; set ahead of shade().
+vec3 surface_point;
+vec3 facet_normal;
 
 // At a texture coordinate and its change from pixel to pixel.
 void readSurface(vec2 uv, vec2 dx, vec2 dy) {

@@ -12,7 +12,3 @@ vec3 viewRay() {
     vec2 p = samplePoint();
     return forward + p.x * step_x + p.y * step_y;
 }
-
-// Where the surface is met, in the world, and its facet's unit normal, turned to the eye; set ahead of shade().
-vec3 surface_point;
-vec3 facet_normal;

@@ -1,11 +1,9 @@
 #include "cli/commands.h"
 #include "cli/frame_writer.h"
-#include "cli/prefiltering.h"
 #include "cli/render_options.h"
 #include "cli/session.h"
 
 #include "core/error.h"
-#include "panorama/square_maps.h"
 
 #include <nlohmann/json.hpp>
 
@@ -24,6 +22,7 @@ struct RenderOptions {
     TurnArguments turn;
     ObjectArguments object;
     MaterialArguments material;
+    MapArguments maps;
     CameraArguments camera;
     PictureArguments picture;
     LightArguments lights;
@@ -37,33 +36,19 @@ struct RenderOptions {
 /// kept.
 struct LoadedScene {
     std::string probe_name, object_name, background_name, lights_name;
-    Panorama probe, diffuse;
+    std::optional<ShaderText> own_shader;
+    RenderMaps maps;
+    bool fixed = true; ///< Material::fixed of what the maps were made for
     std::vector<NamedCamera> cameras;
     Scene scene;
 };
-
-void loadProbe(Session& session, const RenderOptions& options, const std::string& name,
-               LoadedScene& loaded) {
-    ProbeOptions probe = options.probe;
-    probe.input = name;
-    loaded.probe = session.readProbe(probe);
-    // Textures hold lat-longs and cubes.
-    if (isSquareMap(loaded.probe.layout)) {
-        loaded.probe = {Layout::latlong, latlongOf(std::move(loaded.probe), session.threads())};
-    }
-    loaded.scene.probe = &loaded.probe;
-    if (!needsDiffuse(loaded.scene.material)) return;
-    const Panorama latlong{Layout::latlong, latlongOf(Panorama(loaded.probe), session.threads())};
-    const PrefilterRequest request{{Kernel::lambert, 0}, Layout::faces, 64};
-    loaded.diffuse = std::move(runPrefilter(session, latlong, {&request, 1}, {})[0].map);
-    loaded.scene.diffuse = &loaded.diffuse;
-}
 
 /// Brings the scene to a frame. Returns whether anything has to be uploaded.
 bool loadScene(Session& session, const RenderOptions& options, const FramePlace& place,
                LoadedScene& loaded) {
     Scene& scene = loaded.scene;
-    scene.material = materialOf(options.material, place);
+    scene.material = materialOf(options.material, loaded.own_shader, place);
+    scene.interpolation = options.material.interpolation;
     scene.turn = turnOf(options.turn, place);
     scene.placement = placementOf(options.object, place);
     bool changed = false;
@@ -73,12 +58,6 @@ bool loadScene(Session& session, const RenderOptions& options, const FramePlace&
         last = name;
         return changed = true;
     };
-    const bool other_probe = renamed(loaded.probe_name, options.probe.input);
-    if (other_probe) loadProbe(session, options, loaded.probe_name, loaded);
-    if (renamed(loaded.lights_name, options.lights.lights) ||
-        (other_probe && isLightCount(loaded.lights_name))) {
-        scene.lights = lightsOf(session, options.lights, loaded.lights_name, loaded.probe);
-    }
     if (renamed(loaded.object_name, options.object.name)) {
         ObjectFile file = objectOf(session, options.object, loaded.object_name);
         scene.object = std::move(file.object);
@@ -90,6 +69,20 @@ bool loadScene(Session& session, const RenderOptions& options, const FramePlace&
     if (renamed(loaded.background_name, plate.empty() ? options.picture.background : plate)) {
         scene.background = plate.empty() ? backgroundOf(session, loaded.background_name)
                                          : Background(plateOf(session, loaded.background_name));
+    }
+    if (surfacesVary(scene.object)) scene.material.fixed = false;
+    const bool other_lights = renamed(loaded.lights_name, options.lights.lights);
+    const bool counted = isLightCount(loaded.lights_name);
+    const bool other_probe = renamed(loaded.probe_name, options.probe.input);
+    if (other_probe || scene.material.fixed != loaded.fixed) {
+        ProbeOptions probe = options.probe;
+        probe.input = loaded.probe_name;
+        loaded.maps = prepareMaps(session, probe, options.maps, scene, counted);
+        loaded.maps.show(scene);
+        loaded.fixed = scene.material.fixed;
+    }
+    if (other_lights || (other_probe && counted)) {
+        scene.lights = lightsOf(session, options.lights, loaded.lights_name, loaded.maps.probe);
     }
     return changed;
 }
@@ -163,10 +156,10 @@ void drawSequence(Session& session, const RenderOptions& options, const WriteOpt
 }
 
 /// Refuses, before any work is done, what the first frame would be refused for.
-void requireSound(const RenderOptions& options) {
+void requireSound(const RenderOptions& options, const std::optional<ShaderText>& own_shader) {
     requireFrames(options.frames, options.output.output);
     requireFitting(options.display, options.output, options.frames.count());
-    requireLightUse(options.lights, materialOf(options.material, {}), options.picture);
+    requireLightUse(options.lights, materialOf(options.material, own_shader, {}), options.picture);
     if (!options.picture.aovs.empty()) requireExr(options.output, "--aov");
     if (options.camera.of_file.empty()) {
         const FrameOptions& frame = options.picture.frame;
@@ -180,7 +173,8 @@ void requireSound(const RenderOptions& options) {
 void runRender(const RenderOptions& options) {
     Session session("render", options.common);
     const WriteOptions how = writeOptions(options.output, options.common);
-    requireSound(options);
+    const std::optional<ShaderText> own_shader = ownShader(session, options.material);
+    requireSound(options, own_shader);
     FrameOptions frame = options.picture.frame;
     frame.shadow_size = options.lights.shadow_size.value_or(0);
     std::optional<Image> plate; // of the first frame, whose size all frames have
@@ -202,6 +196,7 @@ void runRender(const RenderOptions& options) {
     session.results()["device"] = context.description();
 
     Drawing drawing{context, frame};
+    drawing.loaded.own_shader = own_shader;
     if (plate) {
         drawing.loaded.background_name = plate_name;
         drawing.loaded.scene.background = std::move(*plate);
@@ -233,6 +228,7 @@ Command bindRender(CLI::App& root) {
     bindTurn(*app, options->turn, options->frames);
     bindObject(*app, options->object, options->frames);
     bindMaterial(*app, options->material, options->frames);
+    bindMaps(*app, options->maps);
     app->add_option("--shader-folder", options->shader_folder,
                     "Folder whose files replace the built-in shaders of the same name")
         ->check(CLI::ExistingDirectory)

@@ -66,15 +66,46 @@ void bindDevice(CLI::App& app, DeviceArguments& arguments);
 EglContext contextOf(const DeviceArguments& arguments);
 
 struct MaterialArguments {
-    Shader shader = Shader::mirror;
+    std::string shader = "mirror";                   ///< a row's name, or a file
     std::map<Parameter, std::array<Ramp, 3>> values; ///< those given
+    std::optional<int> samples;
+    std::optional<bool> multiscatter;
+    std::optional<Masking> masking;
+    Interpolation interpolation = Interpolation::phong;
 };
-/// `--shader` and an option for each row of parameterTable().
+/// `--shader`, an option for each row of parameterTable(), `--samples-specular`, `--multiscatter`,
+/// `--masking`, `--interpolation`.
 void bindMaterial(CLI::App& app, MaterialArguments& arguments, FrameRange& frames);
+/// The user's own shader, if `--shader` names a file. Throws Error (input) where it cannot be read.
+std::optional<ShaderText> ownShader(Session& session, const MaterialArguments& arguments);
 /// Throws Error (usage) for a parameter that the shader does not have.
-Material materialOf(const MaterialArguments& arguments, const FramePlace& place);
+Material materialOf(const MaterialArguments& arguments, const std::optional<ShaderText>& own,
+                    const FramePlace& place);
 /// Takes from the object's parts what the arguments give otherwise: metallic and roughness.
 void overrideSurfaces(const MaterialArguments& arguments, Object& object);
+/// Whether parts of the object say how rough or metallic they are.
+bool surfacesVary(const Object& object);
+
+struct MapArguments {
+    std::string diffuse, specular; ///< files made earlier
+};
+/// `--diffuse-map` and `--specular-map`.
+void bindMaps(CLI::App& app, MapArguments& arguments);
+
+/// The maps that a picture needs; the others are empty.
+struct RenderMaps {
+    Panorama probe, diffuse;
+    SpecularMaps specular;
+    Image split_sum;
+    std::vector<Panorama> probe_levels;
+
+    /// Puts them into the scene, which refers to them.
+    void show(Scene& scene) const;
+};
+/// Reads and computes them for the scene's material and background; `probe_needed`: the probe in
+/// any case. Throws Error (usage) for files that the material does not read.
+RenderMaps prepareMaps(Session& session, const ProbeOptions& probe, const MapArguments& arguments,
+                       const Scene& scene, bool probe_needed);
 
 struct PictureArguments {
     std::string background = "probe";

@@ -74,14 +74,20 @@ Ring ringAt(double mu, double tan_h) {
 }
 
 /// (1/pi) int over phi in [0, phi_0] of 4 V (n.l) (v.h) / (n.h), without and with (1 - v.h)^5.
-IBL_MULTIVERSION SplitSum ggxRing(const Ring& ring, double alpha, const InnerRule& rule) {
+/// With lambda(c) = sqrt(c^2 (1 - a2) + a2), V is 1 / (2 (l lambda(mu) + mu lambda(l))) of
+/// correlated masking and 1 / ((l + lambda(l)) (mu + lambda(mu))) of separable.
+IBL_MULTIVERSION SplitSum ggxRing(const Ring& ring, double alpha, const InnerRule& rule,
+                                  Masking masking) {
     const double a2 = alpha * alpha, mu = ring.mu, mu_root = std::sqrt(mu * mu * (1 - a2) + a2);
+    const bool separable = masking == Masking::separable;
     const double to_h = 0.5 / ring.cos_h;
     std::array<double, kMostInner> bias, total;
     for (int k = 0; k < rule.count; ++k) {
         const double l = ring.floor + ring.reach * rule.m[k];
         const double v_dot_h = (l + mu) * to_h, rest = 1 - v_dot_h;
-        const double visibility = 0.5 / (l * mu_root + mu * std::sqrt(l * l * (1 - a2) + a2));
+        const double l_root = std::sqrt(l * l * (1 - a2) + a2);
+        const double visibility =
+            separable ? 1 / ((l + l_root) * (mu + mu_root)) : 0.5 / (l * mu_root + mu * l_root);
         const double f = rule.weight[k] * visibility * l * v_dot_h /
                          std::sqrt(1 - ring.kappa + ring.kappa * rule.m[k]);
         total[k] = f;
@@ -148,7 +154,7 @@ double tanOfHorizon(double mu) {
 
 // D (n.h) dh is du dphi / (2 pi) with tan^2 theta = alpha^2 u / (1 - u), and 1 - u = exp(-tau) has
 // the long tail in even steps.
-SplitSum ggxSplitSum(double n_dot_v, double roughness, int refinement) {
+SplitSum ggxSplitSum(double n_dot_v, double roughness, int refinement, Masking masking) {
     const double mu = n_dot_v, alpha = roughness * roughness;
     const InnerRule rule = innerRule(refinement);
     const double first = tanOfHorizon(mu) / alpha, last = 1 / (tanOfHorizon(mu) * alpha);
@@ -159,7 +165,7 @@ SplitSum ggxSplitSum(double n_dot_v, double roughness, int refinement) {
     SplitSum sum{0, 0};
     const auto add = [&](double tau, double weight) {
         const double tan_h = alpha * std::sqrt(std::expm1(tau));
-        const SplitSum ring = ggxRing(ringAt(mu, tan_h), alpha, rule);
+        const SplitSum ring = ggxRing(ringAt(mu, tan_h), alpha, rule, masking);
         sum.bias += weight * std::exp(-tau) * ring.bias;
         sum.total += weight * std::exp(-tau) * ring.total;
     };
@@ -191,24 +197,25 @@ double clothSplitSum(double n_dot_v, double roughness, int refinement) {
 }
 
 SplitSumTable splitSumTable(const SplitSumOptions& options) {
-    const int n = options.size;
-    SplitSumTable table{Image(n, n), 0};
+    const int n = options.size, rows = options.roughness ? 1 : n;
+    SplitSumTable table{Image(n, rows), 0};
     const int step = std::max(1, n / 8); // texels looked at again, the smoothest and grazing among
                                          // them
-    std::vector<double> moved(static_cast<std::size_t>(n), 0.0);
-    parallelFor(static_cast<std::size_t>(n), options.threads, [&](std::size_t row) {
+    std::vector<double> moved(static_cast<std::size_t>(rows), 0.0);
+    parallelFor(static_cast<std::size_t>(rows), options.threads, [&](std::size_t row) {
         const int j = static_cast<int>(row);
-        const double roughness = (j + 0.5) / n;
+        const double roughness =
+            options.roughness ? std::max(*options.roughness, 0.5 / n) : (j + 0.5) / n;
         for (int i = 0; i < n; ++i) {
             const double mu = (i + 0.5) / n;
-            const SplitSum ggx = ggxSplitSum(mu, roughness);
+            const SplitSum ggx = ggxSplitSum(mu, roughness, 1, options.masking);
             const double cloth = options.cloth ? clothSplitSum(mu, roughness) : 0;
             float* texel = table.image.at(i, j);
             texel[0] = static_cast<float>(options.multiscatter ? ggx.bias : ggx.total - ggx.bias);
             texel[1] = static_cast<float>(options.multiscatter ? ggx.total : ggx.bias);
             texel[2] = static_cast<float>(cloth);
             if (i % step != 0 || j % step != 0) continue;
-            const SplitSum fine = ggxSplitSum(mu, roughness, 2);
+            const SplitSum fine = ggxSplitSum(mu, roughness, 2, options.masking);
             moved[row] = std::max(
                 {moved[row], std::abs(fine.total - ggx.total), std::abs(fine.bias - ggx.bias)});
             if (options.cloth)

@@ -4,13 +4,21 @@
 
 #include "image/image.h"
 
+#include <optional>
+
 namespace ibl {
 
+/// Smith's masking and shadowing of microfacets: correlated in height (Heitz 2014), or the product
+/// of both as though they were independent.
+enum class Masking { correlated, separable };
+
 struct SplitSumOptions {
-    int size = 128;            ///< edge of the table, at least 1
-    bool multiscatter = false; ///< (bias, total) instead of (scale, bias)
-    bool cloth = false;        ///< the cloth term in the third channel, else 0
-    int threads = 0;           ///< 0: as many as the machine has; the result does not depend on it
+    int size = 128;                        ///< edge of the table, at least 1
+    std::optional<double> roughness{};     ///< a single row, of this one (at least that of row 0)
+    Masking masking = Masking::correlated; ///< of GGX
+    bool multiscatter = false;             ///< (bias, total) instead of (scale, bias)
+    bool cloth = false;                    ///< the cloth term in the third channel, else 0
+    int threads = 0; ///< 0: as many as the machine has; the result does not depend on it
 };
 
 struct SplitSumTable {
@@ -20,7 +28,7 @@ struct SplitSumTable {
 
 /// RGB: texel (i, j) stands for N.V = (i + 0.5) / size and the perceptual roughness
 /// (j + 0.5) / size, row 0 at the top, so the top is smooth. With D of GGX, alpha = roughness^2,
-/// and V the height-correlated visibility of Smith (Heitz 2014),
+/// and V the visibility of Smith, G / (4 (n.l) (n.v)),
 ///
 ///     total = int D V 4 (v.h) (n.l) dh,   bias = int D V (1 - v.h)^5 4 (v.h) (n.l) dh,
 ///
@@ -35,7 +43,8 @@ struct SplitSum {
     double bias;
     double total;
 };
-SplitSum ggxSplitSum(double n_dot_v, double roughness, int refinement = 1);
+SplitSum ggxSplitSum(double n_dot_v, double roughness, int refinement = 1,
+                     Masking masking = Masking::correlated);
 double clothSplitSum(double n_dot_v, double roughness, int refinement = 1);
 
 } // namespace ibl

@@ -8,11 +8,11 @@
 
 namespace ibl {
 
-Texture makeTexture(GLenum target, GLenum format, int width, int height) {
+Texture makeTexture(GLenum target, GLenum format, int width, int height, int levels) {
     GLuint id = 0;
     glCreateTextures(target, 1, &id);
     Texture texture(id);
-    glTextureStorage2D(id, 1, format, width, height);
+    glTextureStorage2D(id, levels, format, width, height);
     glTextureParameteri(id, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     glTextureParameteri(id, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     return texture;

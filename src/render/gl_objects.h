@@ -59,8 +59,8 @@ using Renderbuffer = GlObject<deleteRenderbuffer>;
 using ShaderStage = GlObject<deleteShader>;
 using Program = GlObject<deleteProgram>;
 
-/// A texture of one level, unfiltered until told otherwise.
-Texture makeTexture(GLenum target, GLenum format, int width, int height);
+/// A texture, unfiltered until told otherwise.
+Texture makeTexture(GLenum target, GLenum format, int width, int height, int levels = 1);
 Buffer makeBuffer(GLsizeiptr bytes, const void* data);
 Renderbuffer makeRenderbuffer(GLenum format, int width, int height);
 

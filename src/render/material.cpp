@@ -1,6 +1,7 @@
 #include "render/material.h"
 
 #include <algorithm>
+#include <cctype>
 #include <limits>
 
 namespace ibl {
@@ -26,6 +27,12 @@ constexpr std::array<ParameterInfo, kParameters> kTable{{
     {Parameter::lobeY, "lobe-y", 1, -1, -1, 1, "The lobe's factor along the vertical"},
     {Parameter::lobeZ, "lobe-z", 1, 1, 0, 1, "The lobe's factor along the normal"},
     {Parameter::facetRoughness, "facet-roughness", 1, 0.1, 0.001, 1, "Schlick's r"},
+    {Parameter::roughness, "roughness", 1, 0.5, 0, 1, "Roughness, alpha its square"},
+    {Parameter::metallic, "metallic", 1, 0, 0, 1, "Part that is metal"},
+    {Parameter::ior, "ior", 1, 1.5, 1, 4, "Index of refraction"},
+    {Parameter::iorRgb, "ior-rgb", 3, 1.5, 1, 4, "Index of refraction of each channel", 0.04},
+    {Parameter::fresnel, "fresnel", 3, -1, 0, 100,
+     "Reflectance as BIAS,SCALE,POWER, bias + scale (1 - n.v)^power, not from the index"},
 }};
 
 constexpr auto kMirrorParameters = {Parameter::baseColor};
@@ -50,13 +57,29 @@ constexpr auto kLafortuneParameters = {
 constexpr auto kSchlickParameters = {Parameter::baseColor, Parameter::f0, Parameter::facetRoughness,
                                      Parameter::ambient};
 
-constexpr std::array<ShaderInfo, 12> kShaders{{
+constexpr auto kGlassParameters = {Parameter::baseColor, Parameter::ior, Parameter::fresnel};
+constexpr auto kDispersionParameters = {Parameter::baseColor, Parameter::iorRgb,
+                                        Parameter::fresnel};
+constexpr auto kGgxParameters = {Parameter::baseColor, Parameter::roughness, Parameter::metallic,
+                                 Parameter::ior};
+
+constexpr std::array<ShaderInfo, 16> kShaders{{
     {Shader::mirror, "mirror", "mirror.frag",
      "base colour times the radiance along the reflected ray", true, false, kMirrorParameters},
     {Shader::diffuse, "diffuse", "diffuse.frag", "base colour times irradiance / pi", false, true,
      kMirrorParameters},
     {Shader::mirrorDiffuse, "mirror-diffuse", "mirror_diffuse.frag",
      "the two mixed by the reflectivity", true, true, kMirrorDiffuseParameters},
+    {Shader::glass, "glass", "glass.frag",
+     "clear, refracting where light enters and where it leaves, mirroring by Fresnel", true, false,
+     kGlassParameters, false, false, true},
+    {Shader::dispersion, "dispersion", "dispersion.frag",
+     "glass with an index of refraction for each channel", true, false, kDispersionParameters,
+     false, false, true},
+    {Shader::coat, "coat", "coat.frag", "diffuse under a clear coat that mirrors by Fresnel", true,
+     true, kGlassParameters},
+    {Shader::ggx, "ggx", "ggx.frag", "metal or dielectric of some roughness", false, true,
+     kGgxParameters, false, true},
     {Shader::lambert, "lambert", "lambert.frag", "under lights: diffuse", false, false,
      kLambertParameters, true},
     {Shader::phong, "phong", "phong.frag", "under lights: a lobe about the mirrored light", false,
@@ -105,9 +128,36 @@ bool hasParameter(Shader shader, Parameter parameter) {
     return std::ranges::find(of_shader, parameter) != of_shader.end();
 }
 
+bool mentions(std::string_view text, std::string_view identifier) {
+    const auto isPart = [&](std::size_t at) {
+        return at < text.size() &&
+               (std::isalnum(static_cast<unsigned char>(text[at])) || text[at] == '_');
+    };
+    for (std::size_t at = text.find(identifier); at != text.npos;
+         at = text.find(identifier, at + 1)) {
+        if ((at == 0 || !isPart(at - 1)) && !isPart(at + identifier.size())) return true;
+    }
+    return false;
+}
+
+bool hasParameter(const Material& material, Parameter parameter) {
+    if (!material.own) return hasParameter(material.shader, parameter);
+    const auto named = [&](std::string_view name) { return mentions(material.own->text, name); };
+    if (named(uniformName(parameter))) return true;
+    if (parameter == Parameter::baseColor) return named("baseColor");
+    return parameter == Parameter::fresnel && // whose uniform is that of functions
+           (named("surfaceReflectance") || named("throughObject") || named("firstReflectance"));
+}
+
+std::string uniformName(Parameter parameter) {
+    std::string name(parameterInfo(parameter).name);
+    std::ranges::replace(name, '-', '_');
+    return name;
+}
+
 Material::Material(Shader s) : shader(s) {
     for (const ParameterInfo& info : kTable)
-        (*this)[info.parameter] = V3d(info.standard);
+        (*this)[info.parameter] = info.standards();
 }
 
 } // namespace ibl

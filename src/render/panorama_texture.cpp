@@ -22,7 +22,7 @@ void requireSize(const std::string& name, GLenum limit_name, int side) {
 // The fourth channel is added here, since shaders read four-channel texels faster, and drivers are
 // slow at adding it (Mesa 22: 25 ms for 1024x512, here 3).
 void uploadRows(const Texture& texture, int face, const V2i& at, const V2i& size,
-                const float* pixels, int stride) {
+                const float* pixels, int stride, int level = 0) {
     std::vector<float> rgba(static_cast<std::size_t>(size.x) * size.y * 4, 1.0f);
     for (int y = 0; y < size.y; ++y) {
         const float* from = pixels + static_cast<std::size_t>(y) * stride * 3;
@@ -31,11 +31,11 @@ void uploadRows(const Texture& texture, int face, const V2i& at, const V2i& size
             std::copy_n(from + 3 * x, 3, to + 4 * x);
     }
     if (face < 0) {
-        glTextureSubImage2D(texture.id(), 0, at.x, at.y, size.x, size.y, GL_RGBA, GL_FLOAT,
+        glTextureSubImage2D(texture.id(), level, at.x, at.y, size.x, size.y, GL_RGBA, GL_FLOAT,
                             rgba.data());
     } else {
-        glTextureSubImage3D(texture.id(), 0, at.x, at.y, face, size.x, size.y, 1, GL_RGBA, GL_FLOAT,
-                            rgba.data());
+        glTextureSubImage3D(texture.id(), level, at.x, at.y, face, size.x, size.y, 1, GL_RGBA,
+                            GL_FLOAT, rgba.data());
     }
 }
 
@@ -112,6 +112,24 @@ PanoramaTexture uploadPanorama(const Panorama& panorama, const std::string& name
                            is_cube, layout == Layout::exrLatlong || layout == Layout::exrCube};
     checkGl("uploading the " + name);
     return result;
+}
+
+Texture uploadCubeLevels(std::span<const Panorama> levels, const std::string& name) {
+    const int edge = levels[0].image.width;
+    requireSize(name, GL_MAX_CUBE_MAP_TEXTURE_SIZE, edge);
+    Texture texture =
+        makeTexture(GL_TEXTURE_CUBE_MAP, GL_RGBA32F, edge, edge, static_cast<int>(levels.size()));
+    glTextureParameteri(texture.id(), GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+    glTextureParameteri(texture.id(), GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    for (std::size_t k = 0; k < levels.size(); ++k) {
+        const Image& image = levels[k].image;
+        for (int face = 0; face < 6; ++face) {
+            uploadRows(texture, face, {0, 0}, {image.width, image.width},
+                       image.at(0, face * image.width), image.width, static_cast<int>(k));
+        }
+    }
+    checkGl("uploading the " + name);
+    return texture;
 }
 
 Texture uploadImage(const Image& image, const std::string& name) {

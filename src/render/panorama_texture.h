@@ -4,6 +4,7 @@
 #include "panorama/panorama.h"
 #include "render/gl_objects.h"
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,10 @@ struct PanoramaTexture {
 
 /// Throws Error (input) when the device has no texture of that size; the subject is `name`.
 PanoramaTexture uploadPanorama(const Panorama& panorama, const std::string& name);
+
+/// A cube map of mip levels, interpolated between them. Level k has the layout `faces` and the edge
+/// of the first >> k. The same error.
+Texture uploadCubeLevels(std::span<const Panorama> levels, const std::string& name);
 
 /// An image's pixels, as they are. The same error.
 Texture uploadImage(const Image& image, const std::string& name);

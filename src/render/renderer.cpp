@@ -1,12 +1,13 @@
 #include "render/renderer.h"
 
 #include "core/error.h"
+#include "render/far_side.h"
 #include "render/light_choice.h"
 #include "render/lighting.h"
 #include "render/mesh_buffers.h"
 #include "render/panorama_texture.h"
 #include "render/sample_pattern.h"
-#include "render/shader_program.h"
+#include "render/surface_program.h"
 #include "render/surface_textures.h"
 #include "render/uniforms.h"
 
@@ -36,11 +37,16 @@ int shadowSize(const FrameOptions& options) {
     return size;
 }
 
-void setView(const Program& program, const CameraRays& rays, const V2i& tile, const V2d& jitter) {
-    setUniform(program, "pixel_offset", V2d(tile) + jitter - rays.centre);
+// `offset` from the target's pixels to the frame's, counted from its centre.
+void setView(const Program& program, const CameraRays& rays, const V2d& offset) {
+    setUniform(program, "pixel_offset", offset);
     setUniform(program, "forward", rays.forward);
     setUniform(program, "step_x", rays.step_x);
     setUniform(program, "step_y", rays.step_y);
+}
+
+void setView(const Program& program, const CameraRays& rays, const V2i& tile, const V2d& jitter) {
+    setView(program, rays, V2d(tile) + jitter - rays.centre);
 }
 
 void setUpDrawing(int frame_width) {
@@ -55,12 +61,11 @@ void setUpDrawing(int frame_width) {
 } // namespace
 
 bool needsProbe(const Material& material, const Background& background) {
-    return shaderInfo(material.shader).reads_probe ||
-           std::holds_alternative<ProbeBackground>(background);
+    return mapNeeds(material).probe || std::holds_alternative<ProbeBackground>(background);
 }
 
 bool needsDiffuse(const Material& material) {
-    return shaderInfo(material.shader).reads_diffuse;
+    return mapNeeds(material).diffuse;
 }
 
 struct Renderer::State {
@@ -73,8 +78,11 @@ struct Renderer::State {
     Material material;
     Similarity similarity;
     PanoramaTexture probe, diffuse;
-    Texture image;
+    Texture image, specular, split_sum, probe_levels;
+    V2d specular_scale{0, 0}; // level = (roughness - x) y
+    Interpolation interpolation = Interpolation::phong;
     std::optional<MeshBuffers> mesh;
+    std::optional<FarSide> far_side;
 
     VertexArray no_vertices;
     std::optional<Lighting> lighting;
@@ -94,8 +102,10 @@ struct Renderer::State {
     Framebuffer to_kept;
 
     std::vector<std::string> mapDefinitions() const;
-    Program surfaceProgram(std::string_view shader) const;
+    std::vector<std::string> surfaceDefinitions() const;
     void uploadScene(const Scene& scene);
+    void uploadLobe(const Scene& scene);
+    void makeSurface(const Scene& scene);
     void makePrograms(const Scene& scene);
     void makeBackground(const Scene& scene);
     void makeGround();
@@ -114,6 +124,7 @@ struct Renderer::State {
     void drawObject(const Program& program, const CameraRays& rays, const V2i& tile,
                     const V2d& jitter) const;
     void drawMesh(const Program& program, const CameraRays& rays, const V2d& jitter) const;
+    void drawFarSide(const CameraRays& rays, const V2d& jitter) const;
     void drawTile(const CameraRays& rays, const V2i& tile);
     void placeLights(const CameraRays& rays);
     void drawFrame(const Camera& camera, Image& frame);
@@ -129,6 +140,7 @@ void Renderer::State::uploadScene(const Scene& scene) {
         if (!scene.diffuse) throw usage("the shader needs a diffuse map; give one");
         diffuse = uploadPanorama(*scene.diffuse, "diffuse map");
     }
+    uploadLobe(scene);
     if (const auto* picture = std::get_if<ImageBackground>(&scene.background)) {
         if (picture->width != options.width || picture->height != options.height) {
             throw usage("the background image is not of the frame's size; resize one of them");
@@ -141,12 +153,38 @@ void Renderer::State::uploadScene(const Scene& scene) {
     parts = partsOf(scene.object);
     surfaces = uploadSurfaces(scene.object);
     if (scene.object.mesh) mesh = uploadMesh(*scene.object.mesh);
-    lit = shaderInfo(scene.material.shader).lit;
+    lit = !scene.material.own && shaderInfo(scene.material.shader).lit;
     ground = scene.ground;
     if (!lit && !ground) return;
     if (scene.lights.empty()) throw usage("nothing lights the picture; give lights");
     light_scene = &scene;
     lighting.emplace(scene, shadowSize(options), options.shader_folder);
+}
+
+void Renderer::State::uploadLobe(const Scene& scene) {
+    const MapNeeds needs = mapNeeds(scene.material);
+    const auto require = [](bool there, const char* what) {
+        if (!there) throw usage(std::string("the shader needs ") + what + "; give it");
+    };
+    if (needs.specular) {
+        require(scene.specular, "a specular chain");
+        const auto& [levels, first, last] = *scene.specular;
+        specular = uploadCubeLevels(levels, "specular map");
+        specular_scale = {
+            first, last > first ? static_cast<double>(levels.size() - 1) / (last - first) : 0};
+    }
+    if (needs.split_sum) {
+        require(scene.split_sum, "a split-sum table");
+        split_sum = uploadImage(*scene.split_sum, "split-sum table");
+        glTextureParameteri(split_sum.id(), GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+        glTextureParameteri(split_sum.id(), GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+        glTextureParameteri(split_sum.id(), GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+        glTextureParameteri(split_sum.id(), GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    }
+    if (needs.probe_levels) {
+        require(scene.probe_levels, "the probe's levels");
+        probe_levels = uploadCubeLevels(*scene.probe_levels, "probe");
+    }
 }
 
 std::vector<std::string> Renderer::State::mapDefinitions() const {
@@ -165,17 +203,23 @@ std::vector<std::string> Renderer::State::mapDefinitions() const {
     return definitions;
 }
 
-// Draws the object with a file that defines shade().
-Program Renderer::State::surfaceProgram(std::string_view shader) const {
+std::vector<std::string> Renderer::State::surfaceDefinitions() const {
     std::vector<std::string> definitions = mapDefinitions();
     for (const std::string& d : surfaces.definitions)
         definitions.push_back(d);
-    return makeProgram({{mesh ? "mesh.vert" : "fullscreen.vert"},
-                        {"view.glsl", "lookup.glsl", "maps.glsl", "surface.glsl", shader,
-                         mesh ? "mesh_surface.frag" : "sphere_surface.frag"},
-                        definitions,
-                        {}},
-                       options.shader_folder);
+    return definitions;
+}
+
+void Renderer::State::makeSurface(const Scene& scene) {
+    interpolation = scene.interpolation;
+    const SurfaceKind kind{mesh.has_value(), interpolation};
+    surface = makeProgram(surfaceParts(scene.material, kind, surfaceDefinitions()),
+                          options.shader_folder);
+    setUniform(surface, "specular_scale", specular_scale);
+    if (mesh && mapNeeds(scene.material).far_side) {
+        far_side = makeFarSide({options.width, options.height},
+                               makeProgram(farSideParts(kind), options.shader_folder));
+    }
 }
 
 void Renderer::State::makePrograms(const Scene& scene) {
@@ -183,9 +227,9 @@ void Renderer::State::makePrograms(const Scene& scene) {
         return makeProgram({{"fullscreen.vert"}, std::move(fragment), mapDefinitions(), {}},
                            options.shader_folder);
     };
-    const std::string_view file = shaderInfo(scene.material.shader).file;
-    surface = surfaceProgram(lit ? "lit_points.glsl" : file);
+    makeSurface(scene);
     if (lit) {
+        const std::string_view file = shaderInfo(scene.material.shader).file;
         under_lights = program(
             {"view.glsl", "light_blocks.glsl", "lights.glsl", "tangent.glsl", file, "lit.frag"});
     }
@@ -251,25 +295,14 @@ void Renderer::State::place(const Turn& turn, const Placement& placement) {
     }
     const M33d probe_from_world = turnMatrix(turn).transposed();
     setUniform(surface, "probe_from_world", probe_from_world);
+    setUniform(surface, "object_extent", 2 * extent.radius * similarity.scale);
     if (background) setUniform(background, "probe_from_world", probe_from_world);
 }
 
 void Renderer::State::setMaterial(const Material& of_object) {
     material = of_object;
-    for (const Parameter parameter : shaderInfo(material.shader).parameters) {
-        const ParameterInfo& info = parameterInfo(parameter);
-        std::string uniform(info.name);
-        std::ranges::replace(uniform, '-', '_');
-        const V3d& value = material[parameter];
-        for (const Program* program : {&surface, &under_lights}) {
-            if (!*program) continue;
-            if (info.components == 3) {
-                setUniform(*program, uniform.c_str(), value);
-            } else {
-                setUniform(*program, uniform.c_str(), value.x);
-            }
-        }
-    }
+    ibl::setMaterial(surface, material);
+    if (under_lights) ibl::setMaterial(under_lights, material);
 }
 
 V2i Renderer::State::tileSize() const {
@@ -349,6 +382,7 @@ void Renderer::State::drawMesh(const Program& program, const CameraRays& rays,
     }
     const auto clip_from_world = clipFromWorld(rays, box, jitter);
     if (!clip_from_world) return;
+    setUniform(program, "clip_from_world", *clip_from_world);
     setUniform(program, "clip_from_object", world_from_object * *clip_from_world);
     setUniform(program, "world_from_object", world_from_object);
     glUseProgram(program.id());
@@ -363,10 +397,24 @@ void Renderer::State::drawMesh(const Program& program, const CameraRays& rays,
 
 void Renderer::State::drawObject(const Program& program, const CameraRays& rays, const V2i& tile,
                                  const V2d& jitter) const {
+    setUniform(program, "eye", rays.eye);
     if (mesh) return drawMesh(program, rays, jitter);
     bindSurface(surfaces, program, material, parts[0].surface);
     setUniform(program, "part_id", 1.0);
     drawSphere(program, rays, tile);
+}
+
+void Renderer::State::drawFarSide(const CameraRays& rays, const V2d& jitter) const {
+    beginFarSide(*far_side);
+    // Its pixels may be larger than the frame's.
+    const V2d scale(static_cast<double>(options.width) / far_side->size.x,
+                    static_cast<double>(options.height) / far_side->size.y);
+    CameraRays coarse = rays;
+    coarse.step_x *= scale.x;
+    coarse.step_y *= scale.y;
+    setView(far_side->program, coarse, (jitter - rays.centre) / scale);
+    drawMesh(far_side->program, rays, jitter);
+    endFarSide(*far_side);
 }
 
 // Adds the batch's lights to the object's samples: a full-screen pass behind nothing but them.
@@ -413,6 +461,7 @@ void Renderer::State::drawGroundShadow(const CameraRays& rays, const V2i& tile, 
 void Renderer::State::drawSample(const CameraRays& rays, const V2i& tile, const V2d& jitter,
                                  int batch) const {
     glViewport(-tile.x, -tile.y, options.width, options.height);
+    if (far_side) drawFarSide(rays, jitter);
     if (ground) drawGroundShadow(rays, tile, jitter, batch);
     glBindFramebuffer(GL_FRAMEBUFFER, to_sample.id());
     if (!background || batch > 0) {
@@ -478,6 +527,9 @@ void Renderer::State::drawFrame(const Camera& camera, Image& frame) {
     setUpDrawing(options.width);
     glBindTextureUnit(1, diffuse.texture.id());
     glBindTextureUnit(2, image.id());
+    glBindTextureUnit(16, specular.id());
+    glBindTextureUnit(17, split_sum.id());
+    glBindTextureUnit(18, probe_levels.id());
     for (int y = 0; y < options.height; y += size.y) {
         for (int x = 0; x < options.width; x += size.x) {
             drawTile(rays, {x, y});
@@ -494,7 +546,10 @@ void Renderer::State::drawFrame(const Camera& camera, Image& frame) {
 }
 
 void Renderer::State::drawAovs(const Camera& camera, FrameAovs& aovs) {
-    if (!aov) aov = surfaceProgram("aov.frag");
+    if (!aov) {
+        aov = makeProgram(aovParts({mesh.has_value(), interpolation}, surfaceDefinitions()),
+                          options.shader_folder);
+    }
     const CameraRays rays = cameraRays(camera, options.width, options.height);
     const V2i size = tileSize();
     const Texture normals = makeTexture(GL_TEXTURE_2D, GL_RGBA32F, size.x, size.y);
@@ -539,6 +594,14 @@ Renderer::Renderer(const EglContext&, const Scene& scene, const FrameOptions& op
         options.height > limit[1]) {
         throw usage("this device draws frames from 1x1 to " + std::to_string(limit[0]) + "x" +
                     std::to_string(limit[1]) + " pixels; choose a size among these");
+    }
+    if (scene.interpolation != Interpolation::phong && !scene.object.mesh) {
+        throw usage("the sphere has no triangles to interpolate over; take another object");
+    }
+    if (scene.interpolation == Interpolation::gouraud && !scene.material.own &&
+        shaderInfo(scene.material.shader).lit) {
+        throw usage("lights are summed in every pixel, not at vertices; take another "
+                    "interpolation or shader");
     }
     if (options.samples < 1) throw usage("there is no picture of no samples; give at least one");
     state_->options = options;

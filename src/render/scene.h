@@ -41,19 +41,42 @@ struct LightCounts {
     int unseen = 0; ///< not drawn: behind all that is seen
 };
 
+/// The probe convolved with GGX's lobe.
+struct SpecularMaps {
+    std::vector<Panorama> levels; ///< `faces`, level k's edge that of the first >> k
+    double first = 0, last = 0;   ///< roughness of the outer levels, even steps between them
+};
+
+/// Between a mesh's vertices: normals (Phong 1975), colours (Gouraud 1971), or neither: the
+/// triangle's own normal.
+enum class Interpolation { phong, gouraud, flat };
+
 /// All that is uploaded once and drawn from any number of cameras. What the picture does not need
 /// may be absent: a diffuse object before no probe needs no probe, a mirror no diffuse map.
 struct Scene {
     const Panorama* probe = nullptr;   ///< radiance
     const Panorama* diffuse = nullptr; ///< irradiance / pi, such as prefilter() gives
+    const SpecularMaps* specular = nullptr;
+    /// (bias, total) of splitSumTable() with `multiscatter`: roughness down from 0 to 1, or a row.
+    const Image* split_sum = nullptr;
+    /// The probe in `faces`, each level the area-filtered half of the one before.
+    const std::vector<Panorama>* probe_levels = nullptr;
     Object object;
     Material material;
+    Interpolation interpolation = Interpolation::phong;
     Background background;
     std::vector<SceneLight> lights; ///< of lit materials and of the ground
     std::optional<Ground> ground;
     Turn turn; ///< of the probe, with all maps made of it
     Placement placement;
 };
+
+/// Which of these maps a material reads; `far_side` is made by the renderer.
+struct MapNeeds {
+    bool probe = false, diffuse = false, specular = false, split_sum = false, probe_levels = false;
+    bool far_side = false;
+};
+MapNeeds mapNeeds(const Material& material);
 
 /// Whether the scene needs the probe's radiance, and its diffuse map, to be drawn.
 bool needsProbe(const Material& material, const Background& background);

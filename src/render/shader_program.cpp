@@ -88,14 +88,16 @@ ShaderStage compile(GLenum stage, const std::vector<SourceFile>& files,
 } // namespace
 
 Program makeProgram(const ProgramParts& parts, const std::optional<std::filesystem::path>& folder) {
-    std::vector<SourceFile> fragment_files;
-    if (!parts.source.empty()) fragment_files.push_back({"generated source", parts.source});
-    for (const std::string_view name : parts.fragment) {
-        fragment_files.push_back(readShader(name, folder));
-    }
-    std::vector<SourceFile> vertex_files;
+    const auto read = [&](std::string_view name) -> SourceFile {
+        if (parts.own && parts.own->name == name) return {parts.own->name, parts.own->text + "\n"};
+        return readShader(name, folder);
+    };
+    std::vector<SourceFile> vertex_files, fragment_files;
     for (const std::string_view name : parts.vertex)
-        vertex_files.push_back(readShader(name, folder));
+        vertex_files.push_back(read(name));
+    if (!parts.source.empty()) fragment_files.push_back({"generated source", parts.source});
+    for (const std::string_view name : parts.fragment)
+        fragment_files.push_back(read(name));
     const ShaderStage vertex = compile(GL_VERTEX_SHADER, vertex_files, parts.definitions);
     const ShaderStage fragment = compile(GL_FRAGMENT_SHADER, fragment_files, parts.definitions);
 

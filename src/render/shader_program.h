@@ -2,6 +2,7 @@
 #pragma once
 
 #include "render/gl_objects.h"
+#include "render/material.h"
 
 #include <filesystem>
 #include <optional>
@@ -19,14 +20,16 @@ struct EmbeddedShader {
 };
 std::span<const EmbeddedShader> embeddedShaders();
 
-/// What a program is made of: vertex and fragment shader, each as files that follow one another,
-/// preprocessor definitions ("NAME value") ahead of all, and source text that is in no
-/// file, between definitions and fragment shader.
+/// What a program is made of: vertex and fragment shader as files that follow one another,
+/// preprocessor definitions ("NAME value") ahead of all, and source text that is in no file,
+/// between definitions and fragment shader. `own` is a file's text that is neither in the folder
+/// nor embedded; the lists have it by its name.
 struct ProgramParts {
     std::vector<std::string_view> vertex;
     std::vector<std::string_view> fragment;
     std::vector<std::string> definitions;
     std::string source;
+    std::optional<ShaderText> own = std::nullopt;
 };
 
 /// Compiles and links. A file that stands in `folder` replaces the embedded one of its name.

@@ -53,9 +53,9 @@ Texture oneTexel(float r, float g, float b) {
 // The part's own value of a parameter of the shader, otherwise the material's.
 void setParameter(const Program& program, const Material& material, std::string_view name,
                   const std::optional<double>& own) {
-    for (const Parameter parameter : shaderInfo(material.shader).parameters) {
-        if (parameterInfo(parameter).name != name) continue;
-        setUniform(program, std::string(name).c_str(), own.value_or(material[parameter].x));
+    for (const ParameterInfo& info : parameterTable()) {
+        if (info.name != name || !hasParameter(material, info.parameter)) continue;
+        setUniform(program, std::string(name).c_str(), own.value_or(material[info.parameter].x));
     }
 }
 

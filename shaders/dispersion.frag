@@ -1,0 +1,12 @@
+// Glass whose index of refraction is another for each channel.
+uniform vec3 ior_rgb;
+
+vec3 shade(vec3 normal, vec3 incident) {
+    vec3 reflected = probeRadiance(reflect(incident, normal));
+    vec3 result;
+    for (int c = 0; c < 3; ++c) {
+        float through = baseColor()[c] * probeRadiance(throughObject(normal, incident, ior_rgb[c]))[c];
+        result[c] = mix(through, reflected[c], firstReflectance(normal, incident, ior_rgb[c]));
+    }
+    return result;
+}

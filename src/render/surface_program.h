@@ -1,0 +1,26 @@
+// The programs that shade an object, put together from its material. Internal to the render layer.
+#pragma once
+
+#include "render/scene.h"
+#include "render/shader_program.h"
+
+namespace ibl {
+
+/// What a surface program is made for.
+struct SurfaceKind {
+    bool is_mesh; ///< otherwise the sphere
+    Interpolation interpolation;
+};
+
+/// What draws the object; `definitions` are those of its maps and textures.
+ProgramParts surfaceParts(const Material& material, const SurfaceKind& kind,
+                          std::vector<std::string> definitions);
+/// What draws normals, depth and parts.
+ProgramParts aovParts(const SurfaceKind& kind, std::vector<std::string> definitions);
+/// What draws the far side of a mesh for refraction.
+ProgramParts farSideParts(const SurfaceKind& kind);
+
+/// The uniforms of all parameters that the program has.
+void setMaterial(const Program& program, const Material& material);
+
+} // namespace ibl

@@ -1,0 +1,206 @@
+// How meshes are interpolated, and shaders of a user's own.
+#include "scene_support.h"
+
+#include "core/error.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace ibl {
+namespace {
+
+/// A shader of one expression.
+Material own(const std::string& expression, const std::string& uniforms = {}) {
+    Material material;
+    material.own =
+        ShaderText{"own.frag", uniforms + "vec3 shade(vec3 normal, vec3 incident) {\n    return " +
+                                   expression + ";\n}\n"};
+    return material;
+}
+
+/// A triangle in the plane z = 0 whose normals lean outwards.
+Mesh leaningTriangle() {
+    Mesh mesh;
+    mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}};
+    mesh.indices = {0, 1, 2};
+    for (const V3f& p : mesh.positions)
+        mesh.normals.push_back((p + V3f(0, 0, 1)).normalized());
+    return mesh;
+}
+
+const Camera kFront{{0.4, 0.3, 4}, {0, 0, 0}, {0, 1, 0}, 40};
+
+/// The point of the plane z = 0 that a pixel's centre sees, and its barycentric coordinates.
+struct Hit {
+    V3d point;
+    std::array<double, 3> weight;
+    bool inside = false;
+};
+Hit hitAt(int x, int y, int size) {
+    const CameraRays rays = cameraRays(kFront, size, size);
+    const V3d d = rays.direction(x + 0.5, y + 0.5);
+    Hit hit;
+    hit.point = rays.eye - d * (rays.eye.z / d.z);
+    hit.weight[2] = (hit.point.y + 1) / 2;
+    hit.weight[1] = (1 - hit.weight[2] + hit.point.x) / 2;
+    hit.weight[0] = 1 - hit.weight[1] - hit.weight[2];
+    hit.inside = *std::ranges::min_element(hit.weight) > 0.03;
+    return hit;
+}
+
+Image drawTriangle(Interpolation interpolation, const std::string& expression) {
+    Scene scene;
+    scene.object.mesh = leaningTriangle();
+    scene.material = own(expression);
+    scene.interpolation = interpolation;
+    scene.background = NoBackground{};
+    return Renderer(softwareContext(), scene, {48, 48, 1, {}}).render(kFront);
+}
+
+// The square of the normal's x tells the three apart: interpolating commutes with what is linear.
+TEST(Interpolation, OfNormalsColoursOrNothing) {
+    const Mesh mesh = leaningTriangle();
+    const std::string expression = "vec3(normal.x * normal.x, surface_point.xy)";
+    const Image phong = drawTriangle(Interpolation::phong, expression);
+    const Image gouraud = drawTriangle(Interpolation::gouraud, expression);
+    const Image flat = drawTriangle(Interpolation::flat, "normal + vec3(0.0, 0.0, 1.0)");
+    int compared = 0;
+    for (int y = 0; y < 48; ++y) {
+        for (int x = 0; x < 48; ++x) {
+            const Hit hit = hitAt(x, y, 48);
+            if (!hit.inside) continue;
+            V3d normal(0);
+            double color = 0;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const V3d n(mesh.normals[k]);
+                normal += n * hit.weight[k];
+                color += n.x * n.x * hit.weight[k];
+            }
+            normal.normalize();
+            const V3d p = hit.point;
+            EXPECT_LT((pixel(phong, x, y) - V3d(normal.x * normal.x, p.x, p.y)).length(), 1e-4);
+            EXPECT_LT((pixel(gouraud, x, y) - V3d(color, p.x, p.y)).length(), 1e-4);
+            EXPECT_LT((pixel(flat, x, y) - V3d(0, 0, 2)).length(), 1e-3);
+            ++compared;
+        }
+    }
+    EXPECT_GT(compared, 100);
+}
+
+TEST(Interpolation, BothSidesTurnTheirNormalsToTheEye) {
+    for (const Interpolation interpolation :
+         {Interpolation::phong, Interpolation::gouraud, Interpolation::flat}) {
+        for (const bool turned : {false, true}) {
+            Scene scene;
+            scene.object.mesh = leaningTriangle();
+            if (turned) {
+                std::swap(scene.object.mesh->indices[0], scene.object.mesh->indices[1]);
+                for (V3f& n : scene.object.mesh->normals)
+                    n = -n;
+            }
+            scene.material = own("vec3(normal.z, surface_outside ? 1.0 : 0.0, -incident.z)");
+            scene.interpolation = interpolation;
+            scene.background = NoBackground{};
+            const Image frame = Renderer(softwareContext(), scene, {33, 33, 1, {}}).render(kFront);
+            const V3d seen = pixel(frame, 16, 18);
+            EXPECT_GT(seen.x, 0.5) << turned;
+            EXPECT_EQ(seen.y, turned ? 0 : 1);
+            EXPECT_GT(seen.z, 0.9);
+        }
+    }
+}
+
+TEST(Interpolation, TheSphereHasNoTriangles) {
+    Scene scene;
+    scene.material = own("normal");
+    scene.interpolation = Interpolation::flat;
+    scene.background = NoBackground{};
+    EXPECT_THROW(Renderer(softwareContext(), scene, {9, 9, 1, {}}), Error);
+}
+
+TEST(OwnShader, ReadsTheMapsAndParametersThatItNames) {
+    const Panorama probe = constantProbe(3), diffuse = constantProbe(5);
+    Scene scene;
+    scene.probe = &probe;
+    scene.diffuse = &diffuse;
+    scene.background = NoBackground{};
+    scene.material =
+        own("baseColor() * probeRadiance(normal) + roughness * diffuseRadiance(normal)",
+            "uniform float roughness;\n");
+    scene.material[Parameter::baseColor] = {1, 2, 4};
+    scene.material[Parameter::roughness] = V3d(0.25);
+    EXPECT_TRUE(hasParameter(scene.material, Parameter::roughness));
+    EXPECT_TRUE(hasParameter(scene.material, Parameter::baseColor));
+    EXPECT_FALSE(hasParameter(scene.material, Parameter::metallic));
+    const MapNeeds needs = mapNeeds(scene.material);
+    EXPECT_TRUE(needs.probe && needs.diffuse);
+    EXPECT_FALSE(needs.specular || needs.split_sum || needs.probe_levels || needs.far_side);
+    const Image frame = Renderer(softwareContext(), scene, {9, 9, 1, {}}).render({});
+    EXPECT_EQ(pixel(frame, 4, 4), V3d(4.25, 7.25, 13.25));
+}
+
+TEST(OwnShader, HasFresnelAndRefraction) {
+    const Panorama probe = constantProbe(1);
+    Scene scene;
+    scene.probe = &probe;
+    scene.background = NoBackground{};
+    scene.material =
+        own("vec3(surfaceReflectance(1.0, ior), throughObject(normal, incident, ior).xy)",
+            "uniform float ior;\n");
+    const Image frame = Renderer(softwareContext(), scene, {9, 9, 1, {}}).render({});
+    EXPECT_NEAR(pixel(frame, 4, 4).x, 0.04, 1e-6); // ((1.5 - 1) / (1.5 + 1))^2
+    EXPECT_NEAR(pixel(frame, 4, 4).y, 0, 1e-5);    // straight on
+}
+
+TEST(Materials, AllMapsTurnWithTheProbe) {
+    const Panorama probe = noiseProbe(Layout::faces, 4, 24);
+    SpecularMaps maps;
+    maps.levels.push_back(probe);
+    Scene scene;
+    scene.probe = &probe;
+    scene.specular = &maps;
+    scene.probe_levels = &maps.levels;
+    scene.turn = {70, 20, 10, false};
+    scene.background = NoBackground{};
+    scene.material = own("vec3(1.0) + specularRadiance(normal, 0.0) - probeRadiance(normal)");
+    const auto expectOne = [&](const char* what) {
+        const Image frame = Renderer(softwareContext(), scene, {24, 24, 1, {}}).render(kFront);
+        for (int i = 0; i < 24 * 24; ++i) {
+            const float* p = frame.pixels.data() + 4 * i;
+            if (p[3] != 1) continue;
+            EXPECT_NEAR(p[0], 1, 1e-3) << what;
+        }
+    };
+    expectOne("specular");
+    scene.material = own("mirrored(normal, incident)",
+                         "vec3 mirrored(vec3 normal, vec3 incident) {\n    vec2 albedo;\n"
+                         "    vec3 bias, total;\n"
+                         "    ggxIntegrals(normal, incident, 0.0, albedo, bias, total);\n"
+                         "    return total / probeRadiance(reflect(incident, normal));\n}\n");
+    scene.material.specular.samples = 4;
+    expectOne("sampled");
+}
+
+TEST(OwnShader, ErrorsNameItsLine) {
+    Scene scene;
+    scene.background = NoBackground{};
+    scene.material = own("normal.xyzw");
+    try {
+        Renderer(softwareContext(), scene, {9, 9, 1, {}});
+        ADD_FAILURE() << "compiled";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ExitCode::input);
+        EXPECT_EQ(std::string(error.what()).rfind("own.frag:2: ", 0), 0u) << error.what();
+    }
+}
+
+TEST(Mentions, FindsWholeIdentifiers) {
+    EXPECT_TRUE(mentions("a = roughness;", "roughness"));
+    EXPECT_TRUE(mentions("roughness", "roughness"));
+    EXPECT_FALSE(mentions("my_roughness roughness2", "roughness"));
+    EXPECT_TRUE(mentions("my_roughness, roughness", "roughness"));
+}
+
+} // namespace
+} // namespace ibl
