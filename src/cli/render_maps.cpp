@@ -137,8 +137,8 @@ RenderMaps prepareMaps(Session& session, const ProbeOptions& options, const MapA
     if (!arguments.diffuse.empty()) maps.diffuse = readMap(session, arguments.diffuse);
     if (!arguments.specular.empty()) maps.specular = readSpecular(session, arguments.specular);
     if (needs.split_sum) {
-        SplitSumOptions table{kTableSize, {},    material.specular.masking,
-                              true,       false, session.threads()};
+        SplitSumOptions table{kTableSize, true, false, session.threads()};
+        table.masking = material.specular.masking;
         if (!material.own && material.fixed) table.roughness = material[Parameter::roughness].x;
         maps.split_sum = session.stage("split-sum", [&] { return splitSumTable(table).image; });
     }

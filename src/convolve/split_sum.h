@@ -13,12 +13,12 @@ namespace ibl {
 enum class Masking { correlated, separable };
 
 struct SplitSumOptions {
-    int size = 128;                        ///< edge of the table, at least 1
+    int size = 128;            ///< edge of the table, at least 1
+    bool multiscatter = false; ///< (bias, total) instead of (scale, bias)
+    bool cloth = false;        ///< the cloth term in the third channel, else 0
+    int threads = 0;           ///< 0: as many as the machine has; the result does not depend on it
     std::optional<double> roughness{};     ///< a single row, of this one (at least that of row 0)
     Masking masking = Masking::correlated; ///< of GGX
-    bool multiscatter = false;             ///< (bias, total) instead of (scale, bias)
-    bool cloth = false;                    ///< the cloth term in the third channel, else 0
-    int threads = 0; ///< 0: as many as the machine has; the result does not depend on it
 };
 
 struct SplitSumTable {

@@ -257,7 +257,7 @@ TEST(Materials, SplitSumReadsTheLevelOfItsRoughness) {
         maps.levels.push_back({Layout::faces, Image(4 >> k, 6 * (4 >> k))});
         std::ranges::fill(maps.levels.back().image.pixels, static_cast<float>(k + 1));
     }
-    const Image table = splitSumTable({32, {}, Masking::correlated, true, false, 1}).image;
+    const Image table = splitSumTable({32, true, false, 1}).image;
     Scene scene;
     scene.specular = &maps;
     scene.split_sum = &table;
@@ -286,7 +286,7 @@ TEST(Materials, NothingIsUndefinedAtTheEnds) {
     const Panorama probe = constantProbe(1);
     const std::vector<Panorama> levels = probeLevels(probe, 1);
     const SpecularMaps maps{{levels.back()}, 0, 0};
-    const Image table = splitSumTable({16, {}, Masking::correlated, true, false, 1}).image;
+    const Image table = splitSumTable({16, true, false, 1}).image;
     Scene scene;
     scene.probe = scene.diffuse = &probe;
     scene.probe_levels = &levels;

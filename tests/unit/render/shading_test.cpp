@@ -175,7 +175,7 @@ TEST(Shading, FurnaceIsConstantForEveryObjectAndShader) {
     SpecularMaps lobe;
     lobe.levels.push_back({Layout::faces, Image(2, 12)});
     std::ranges::fill(lobe.levels[0].image.pixels, 0.7f);
-    const Image table = splitSumTable({32, {}, Masking::correlated, true, false, 1}).image;
+    const Image table = splitSumTable({32, true, false, 1}).image;
     for (const std::string_view name : builtinObjectNames()) {
         for (const ShaderInfo& info : shaderTable()) {
             if (info.lit) continue; // lights_test.cpp
