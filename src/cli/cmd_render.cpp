@@ -24,6 +24,7 @@ struct RenderOptions {
     MaterialArguments material;
     MapArguments maps;
     CameraArguments camera;
+    LensArguments lens;
     PictureArguments picture;
     LightArguments lights;
     DisplayArguments display;
@@ -114,11 +115,16 @@ Frame drawFrame(Session& session, const RenderOptions& options, const FramePlace
     const Camera camera = cameraOf(options.camera, place, drawing.frame, drawing.loaded.cameras);
     Frame frame{session.stage("draw", [&] { return drawing.renderer->render(camera); }), {}};
     if (!scene.lights.empty()) reportLights(session, drawing.renderer->lightCounts());
-    if (!options.picture.aovs.empty()) {
-        frame.aovs = session.stage("aov", [&] {
-            return aovChannels(options.picture, drawing.renderer->renderAovs(camera));
+    const bool blurs = options.lens.blurs(place);
+    if (!blurs && options.picture.aovs.empty()) return frame;
+    FrameAovs aovs = session.stage("aov", [&] { return drawing.renderer->renderAovs(camera); });
+    if (blurs) {
+        session.stage("lens", [&] {
+            throughLens(drawing.context, options.lens, place, camera, drawing.frame, scene.ground,
+                        aovs, session.threads(), frame.picture);
         });
     }
+    if (!options.picture.aovs.empty()) frame.aovs = aovChannels(options.picture, std::move(aovs));
     return frame;
 }
 
@@ -160,6 +166,7 @@ void requireSound(const RenderOptions& options, const std::optional<ShaderText>&
     requireFrames(options.frames, options.output.output);
     requireFitting(options.display, options.output, options.frames.count());
     requireLightUse(options.lights, materialOf(options.material, own_shader, {}), options.picture);
+    requireLens(options.lens, options.camera);
     if (!options.picture.aovs.empty()) requireExr(options.output, "--aov");
     if (options.camera.of_file.empty()) {
         const FrameOptions& frame = options.picture.frame;
@@ -235,6 +242,7 @@ Command bindRender(CLI::App& root) {
         ->type_name("DIR")
         ->group("Material");
     bindCamera(*app, options->camera, options->frames);
+    bindLens(*app, options->lens, options->frames);
     bindPicture(*app, options->picture);
     bindLightOptions(*app, options->lights);
     bindFrames(*app, options->frames);

@@ -7,6 +7,7 @@
 
 #include "lights/cut_lights.h"
 #include "lights/scene_light.h"
+#include "render/defocus.h"
 #include "render/object_file.h"
 #include "render/renderer.h"
 
@@ -34,6 +35,22 @@ void bindCamera(CLI::App& app, CameraArguments& arguments, FrameRange& frames);
 /// The camera at a frame of that size. Throws Error (usage) for a camera that the file lacks.
 Camera cameraOf(const CameraArguments& arguments, const FramePlace& place,
                 const FrameOptions& frame, const std::vector<NamedCamera>& of_file);
+
+/// Depth of field.
+struct LensArguments {
+    Ramp aperture = 0;         ///< diameter in scene units
+    std::optional<Ramp> focus; ///< distance along the view, otherwise the target's
+
+    bool blurs(const FramePlace& place) const { return aperture.at(place) > 0; }
+};
+void bindLens(CLI::App& app, LensArguments& arguments, FrameRange& frames);
+/// Refuses a focus without a lens, and a lens without a focus.
+void requireLens(const LensArguments& lens, const CameraArguments& camera);
+/// Puts a scene-linear picture out of focus where the lens does.
+void throughLens(const EglContext& context, const LensArguments& arguments, const FramePlace& place,
+                 const Camera& camera, const FrameOptions& options,
+                 const std::optional<Ground>& ground, const FrameAovs& aovs, int threads,
+                 Image& picture);
 
 struct ObjectArguments {
     std::string name = "sphere"; ///< built in, or a file

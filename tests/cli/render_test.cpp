@@ -442,5 +442,42 @@ TEST(Render, NeedsNoDisplay) {
     EXPECT_NE(result.err.find("device: "), std::string::npos) << result.err;
 }
 
+TEST(Render, DepthOfFieldBlursWhatIsOutOfFocus) {
+    const Scratch scratch;
+    const auto drawn = [&](const char* name, std::vector<std::string> more) {
+        std::vector<std::string> words{"render", "--probe", "builtin:compass",
+                                       "--size", "96x64",   "--samples",
+                                       "4",      "-o",      name};
+        words.insert(words.end(), more.begin(), more.end());
+        const ToolResult result = runTool(words, scratch.path());
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+        return readImage((scratch / name).string()).image;
+    };
+    const auto steps = [](const Image& picture) { // between neighbours in the upper row
+        double sum = 0;
+        for (int x = 1; x < picture.width; ++x)
+            sum += std::abs(picture.at(x, 0)[0] - picture.at(x - 1, 0)[0]);
+        return sum;
+    };
+    const Image sharp = drawn("s.exr", {}), blurred = drawn("b.exr", {"--aperture", "0.3"});
+    EXPECT_LT(steps(blurred), 0.8 * steps(sharp));
+    // In focus the middle of the sphere, 3 away, stays as it is.
+    const Image focused = drawn("f.exr", {"--aperture", "0.02", "--focus", "3"});
+    for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(focused.at(48, 32)[c], sharp.at(48, 32)[c], 1e-5);
+    for (const auto& bad :
+         std::vector<std::vector<std::string>>{{"--focus", "3"},
+                                               {"--aperture", "0", "--focus", "3"},
+                                               {"--aperture", "-1"},
+                                               {"--aperture", "1", "--focus", "0"},
+                                               {"--aperture", "1000"}}) {
+        std::vector<std::string> words{"render", "--probe", "builtin:sky", "--size",
+                                       "64x64",  "-o",      "bad.exr"};
+        words.insert(words.end(), bad.begin(), bad.end());
+        EXPECT_EQ(runTool(words, scratch.path()).exit_code, 1) << bad[0];
+        EXPECT_FALSE(std::filesystem::exists(scratch / "bad.exr"));
+    }
+}
+
 } // namespace
 } // namespace ibl
