@@ -1,6 +1,7 @@
 #include "render/display_chain.h"
 
 #include "core/error.h"
+#include "core/parallel.h"
 #include "render/blur_pyramid.h"
 #include "render/display_lut.h"
 #include "render/uniforms.h"
@@ -62,6 +63,22 @@ std::vector<double> octaveWeights(double level, std::size_t most, double weight)
 
 std::size_t levelsOf(const Target& base) {
     return static_cast<std::size_t>(std::log2(std::max(base.size.x, base.size.y))) + 1;
+}
+
+/// Exposure alone: not worth the way to the device and back. As exposed() of exposure.glsl.
+void expose(Image& picture, double exposure, int threads) {
+    constexpr float kLargest = std::numeric_limits<float>::max();
+    const auto factor = static_cast<float>(exposure);
+    const std::size_t row = picture.rowFloats();
+    parallelForRuns(static_cast<std::size_t>(picture.height), 16, threads,
+                    [&](std::size_t first, std::size_t last) {
+                        float* values = picture.pixels.data();
+                        for (std::size_t i = first * row; i < last * row; ++i) {
+                            const float v = values[i] * factor;
+                            values[i] =
+                                std::isnan(values[i]) ? 0 : std::clamp(v, -kLargest, kLargest);
+                        }
+                    });
 }
 
 constexpr int kBandPixels = 1 << 19;
@@ -322,6 +339,10 @@ void DisplayChain::apply(Image& picture, double exposure_stops, int threads) {
     const DisplayOptions& o = state_->options;
     const bool lens = state_->glows() || o.vignette > 0;
     const bool local = o.tone_map == ToneMap::retinex || o.tone_map == ToneMap::reinhardLocal;
+    if (!lens && o.tone_map == ToneMap::none && picture.channels == 3) {
+        expose(picture, exposure, threads);
+        return;
+    }
     if (!lens || !local) {
         state_->run(picture, exposure, o.tone_map, lens, threads);
         return;
