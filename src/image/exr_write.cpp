@@ -9,6 +9,7 @@
 #include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfStandardAttributes.h>
+#include <OpenEXR/ImfThreading.h>
 
 #include <array>
 #include <utility>
@@ -146,8 +147,10 @@ WriteLosses writeExr(OutputFile& file, const Image& image, const WriteOptions& o
     try {
         OutputStream stream(file);
         const Imf::Header header = makeHeader(image, options, file.path());
-        // Handing rows to other threads costs more than copying them.
+        // Handing rows to other threads costs more than copying them, and OpenEXR hands them to its
+        // pool, which reading may have made, whatever number a file is given.
         const bool plain = header.compression() == Imf::NO_COMPRESSION;
+        if (plain && Imf::globalThreadCount() > 0) Imf::setGlobalThreadCount(0);
         Imf::OutputFile out(stream, header, plain ? 0 : exrThreads(options.threads));
         if (options.type == PixelType::half) {
             losses = writeHalf(out, image, options);
