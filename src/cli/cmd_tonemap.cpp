@@ -9,7 +9,10 @@
 #include "panorama/census.h"
 #include "render/exposure.h"
 
+#include <exception>
+#include <future>
 #include <memory>
+#include <optional>
 
 namespace ibl {
 namespace {
@@ -82,12 +85,24 @@ void runTonemap(const TonemapOptions& options) {
     Session session("tonemap", options.common);
     const WriteOptions how = writeOptions(options.output, options.common);
     requireFitting(options.display, options.output);
-    Image picture = readPicture(session, options);
-    const double log_average = screenPicture(session, options, picture);
-    const EglContext context = session.stage("context", [] { return EglContext(); });
-    session.detail("device: " + context.description());
-    session.results()["device"] = context.description();
-    showPicture(session, context, options.display, std::move(picture), log_average, options.output,
+    // The device is found while the picture is read, on this thread, where the context must be.
+    Image picture;
+    std::future<double> reading = std::async(std::launch::async, [&] {
+        picture = readPicture(session, options);
+        return screenPicture(session, options, picture);
+    });
+    std::optional<EglContext> context;
+    std::exception_ptr no_device;
+    try {
+        context.emplace();
+    } catch (...) {
+        no_device = std::current_exception();
+    }
+    const double log_average = reading.get(); // what is wrong with the picture is said first
+    if (no_device) std::rethrow_exception(no_device);
+    session.detail("device: " + context->description());
+    session.results()["device"] = context->description();
+    showPicture(session, *context, options.display, std::move(picture), log_average, options.output,
                 how);
     session.finish();
 }
