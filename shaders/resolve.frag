@@ -7,9 +7,12 @@ out vec4 color;
 const float largest = 3.4028235e38;
 
 void main() {
-    vec4 mean = texelFetch(samples, ivec2(gl_FragCoord.xy), 0) / sum_weight;
+    vec4 sum = texelFetch(samples, ivec2(gl_FragCoord.xy), 0);
+    vec4 mean = sum / sum_weight;
 #if KEEP_POSITIVE
     mean.rgb = max(mean.rgb, 0.0);
 #endif
-    color = vec4(clamp(mean.rgb, -largest, largest), mean.a);
+    // A mean of the largest may round to infinity; what a sample made infinite or NaN stays that.
+    bvec3 broken = bvec3(uvec3(isinf(sum.rgb)) | uvec3(isnan(sum.rgb)));
+    color = vec4(mix(clamp(mean.rgb, -largest, largest), sum.rgb, broken), mean.a);
 }

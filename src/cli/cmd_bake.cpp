@@ -33,11 +33,12 @@ class BakeFolder {
 public:
     explicit BakeFolder(const std::string& path) : path_(path) {
         std::error_code problem;
+        if (std::filesystem::exists(path_, problem) && !std::filesystem::is_directory(path_))
+            throw outputError(path, "is a file; name a folder");
         made_ = std::filesystem::create_directory(path_, problem);
         if (problem)
             throw outputError(path, "the folder cannot be made (" + problem.message() +
                                         "); name one in a folder that is there");
-        if (!std::filesystem::is_directory(path_)) throw outputError(path, "is not a folder");
     }
     ~BakeFolder() {
         std::error_code ignored; // a folder that holds something stays

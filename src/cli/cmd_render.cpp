@@ -4,9 +4,12 @@
 #include "cli/session.h"
 
 #include "core/error.h"
+#include "render/shader_program.h"
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -44,9 +47,20 @@ struct LoadedScene {
     Scene scene;
 };
 
+void requireSize(const std::string& name, const Background& background, const FrameOptions& frame) {
+    const auto* image = std::get_if<ImageBackground>(&background);
+    if (!image || (image->width == frame.width && image->height == frame.height)) return;
+    const auto size = [](int width, int height) {
+        return std::to_string(width) + "x" + std::to_string(height);
+    };
+    throw inputError(name, "is of " + size(image->width, image->height) +
+                               " pixels, the picture of " + size(frame.width, frame.height) +
+                               "; resize one of them");
+}
+
 /// Brings the scene to a frame. Returns whether anything has to be uploaded.
-bool loadScene(Session& session, const RenderOptions& options, const FramePlace& place,
-               LoadedScene& loaded) {
+bool loadScene(Session& session, const RenderOptions& options, const FrameOptions& frame,
+               const FramePlace& place, LoadedScene& loaded) {
     Scene& scene = loaded.scene;
     scene.material = materialOf(options.material, loaded.own_shader, place);
     scene.interpolation = options.material.interpolation;
@@ -68,8 +82,10 @@ bool loadScene(Session& session, const RenderOptions& options, const FramePlace&
     if (!scene.ground) scene.ground = groundOf(options.lights, scene);
     const std::string& plate = options.lights.plate;
     if (renamed(loaded.background_name, plate.empty() ? options.picture.background : plate)) {
-        scene.background = plate.empty() ? backgroundOf(session, loaded.background_name)
-                                         : Background(plateOf(session, loaded.background_name));
+        scene.background = plate.empty()
+                               ? backgroundOf(session, loaded.background_name)
+                               : Background(session.readPicture(loaded.background_name, "plate"));
+        requireSize(loaded.background_name, scene.background, frame);
     }
     if (surfacesVary(scene.object)) scene.material.fixed = false;
     const bool other_lights = renamed(loaded.lights_name, options.lights.lights);
@@ -92,6 +108,7 @@ bool loadScene(Session& session, const RenderOptions& options, const FramePlace&
 struct Drawing {
     const EglContext& context;
     const FrameOptions& frame;
+    std::size_t bad_pixels = 0; ///< with NaN or infinite values, of all frames
     LoadedScene loaded = LoadedScene();
     std::optional<Renderer> renderer = std::nullopt;
 };
@@ -102,9 +119,27 @@ struct Frame {
     std::vector<ExtraChannel> aovs;
 };
 
+std::size_t countNotFinite(const Image& picture) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < picture.pixels.size(); i += picture.channels) {
+        float sum = 0; // of zeros, or NaN
+        for (std::size_t c = i; c < i + picture.channels; ++c)
+            sum += 0 * picture.pixels[c];
+        count += sum != 0;
+    }
+    return count;
+}
+
+void noteNotFinite(Session& session, const std::string& shader, std::size_t count) {
+    if (count == 0) return;
+    session.note("--shader " + shader,
+                 std::to_string(count) + (count == 1 ? " pixel was" : " pixels were") +
+                     " NaN or infinite; written as 0 and as the largest number that fits");
+}
+
 Frame drawFrame(Session& session, const RenderOptions& options, const FramePlace& place,
                 Drawing& drawing) {
-    const bool changed = loadScene(session, options, place, drawing.loaded);
+    const bool changed = loadScene(session, options, drawing.frame, place, drawing.loaded);
     const Scene& scene = drawing.loaded.scene;
     if (changed) {
         session.stage("upload",
@@ -114,6 +149,7 @@ Frame drawFrame(Session& session, const RenderOptions& options, const FramePlace
     }
     const Camera camera = cameraOf(options.camera, place, drawing.frame, drawing.loaded.cameras);
     Frame frame{session.stage("draw", [&] { return drawing.renderer->render(camera); }), {}};
+    drawing.bad_pixels += countNotFinite(frame.picture);
     if (!scene.lights.empty()) reportLights(session, drawing.renderer->lightCounts());
     const bool blurs = options.lens.blurs(place);
     if (!blurs && options.picture.aovs.empty()) return frame;
@@ -177,6 +213,21 @@ void requireSound(const RenderOptions& options, const std::optional<ShaderText>&
     }
 }
 
+/// The folder, if it is one and replaces anything.
+std::filesystem::path shaderFolder(const std::string& name) {
+    std::error_code ignored;
+    if (!std::filesystem::is_directory(name, ignored))
+        throw inputError(name, "there is no such folder; check the name");
+    const bool replaces = std::ranges::any_of(embeddedShaders(), [&](const EmbeddedShader& shader) {
+        return std::filesystem::exists(std::filesystem::path(name) / shader.name, ignored);
+    });
+    if (!replaces) {
+        throw inputError(name, "has no file of a built-in shader's name; give one that has, or "
+                               "--shader FILE.frag for a shader of your own");
+    }
+    return name;
+}
+
 void runRender(const RenderOptions& options) {
     Session session("render", options.common);
     const WriteOptions how = writeOptions(options.output, options.common);
@@ -188,11 +239,11 @@ void runRender(const RenderOptions& options) {
     const std::string plate_name =
         nameOfFrame(options.lights.plate, options.frames, {options.frames.first, 0, 1});
     if (!plate_name.empty() && !options.picture.size_given) {
-        plate = plateOf(session, plate_name);
+        plate = session.readPicture(plate_name, "plate");
         frame.width = plate->width;
         frame.height = plate->height;
     }
-    if (!options.shader_folder.empty()) frame.shader_folder = options.shader_folder;
+    if (!options.shader_folder.empty()) frame.shader_folder = shaderFolder(options.shader_folder);
     const EglContext context = session.stage("context", [&] { return contextOf(options.device); });
     if (options.common.verbose) {
         const std::vector<std::string> devices = eglDevices();
@@ -223,6 +274,7 @@ void runRender(const RenderOptions& options) {
                 how);
         });
     }
+    noteNotFinite(session, options.material.shader, drawing.bad_pixels);
     session.finish();
 }
 
@@ -238,7 +290,6 @@ Command bindRender(CLI::App& root) {
     bindMaps(*app, options->maps);
     app->add_option("--shader-folder", options->shader_folder,
                     "Folder whose files replace the built-in shaders of the same name")
-        ->check(CLI::ExistingDirectory)
         ->type_name("DIR")
         ->group("Material");
     bindCamera(*app, options->camera, options->frames);

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 namespace ibl {
 namespace {
@@ -88,9 +89,12 @@ CLI::Validator rampIn(double least, double most) {
             const auto fits = [&](double v) { return v >= least && v <= most; };
             if (ramp && fits(ramp->from) && fits(ramp->to)) return std::string();
             char range[64];
-            std::snprintf(range, sizeof range, "%g to %g", least, most);
-            return "'" + text + "' is neither a number nor a range FROM..TO of numbers from " +
-                   range;
+            if (least == std::numeric_limits<double>::min()) {
+                std::snprintf(range, sizeof range, "above 0 and to %g", most);
+            } else {
+                std::snprintf(range, sizeof range, "from %g to %g", least, most);
+            }
+            return "'" + text + "' is neither a number nor a range FROM..TO of numbers " + range;
         },
         "");
 }

@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -18,12 +19,47 @@ constexpr const char* kFooter =
     "Exit status: 0 done, 1 usage, 2 input, 3 something is not on this machine, 4 output,\n"
     "5 the asked error cannot be met. See ibltool(1).";
 
+/// What CLI11 says of a wrong number of values, "--size: At Most 1 required but received 2", in
+/// terms of what was typed.
+std::string countMessage(const std::string& message) {
+    const std::size_t colon = message.find(": At ");
+    unsigned wanted = 0, given = 0;
+    if (colon == message.npos ||
+        std::sscanf(message.c_str() + colon, ": At %*s %u required but received %u", &wanted,
+                    &given) != 2) {
+        return message;
+    }
+    const std::string name = message.substr(0, colon);
+    if (given > wanted && given % wanted == 0) return name + ": is given more than once";
+    return name + ": takes " + std::to_string(wanted) + (wanted == 1 ? " value" : " values") +
+           ", not " + std::to_string(given);
+}
+
+/// The first word that no option took.
+std::string extraMessage(const CLI::App& root) {
+    const std::vector<std::string> words = root.remaining(true);
+    const auto option = std::ranges::find_if(
+        words, [](const std::string& word) { return word.size() > 1 && word.starts_with('-'); });
+    if (option != words.end()) return *option + ": there is no such option";
+    return words.front() + ": is one word too many";
+}
+
 /// CLI11's message on one line, with the command whose help explains it.
 std::string usageMessage(const CLI::App& root, const CLI::ParseError& error) {
     std::string command = "ibltool";
     for (const CLI::App* app : root.get_subcommands())
         command += " " + app->get_name();
     std::string message = error.what();
+    const std::string conversion = "Could not convert: ";
+    if (dynamic_cast<const CLI::ArgumentMismatch*>(&error)) {
+        message = countMessage(message);
+    } else if (dynamic_cast<const CLI::ExtrasError*>(&error)) {
+        message = extraMessage(root);
+    } else if (message.starts_with(conversion)) { // "--eye = 0,zz,4"
+        message.erase(0, conversion.size());
+        const std::size_t sign = message.find(" = ");
+        message = message.substr(0, sign) + ": '" + message.substr(sign + 3) + "' is no number";
+    }
     while (!message.empty() && (message.back() == '\n' || message.back() == '.'))
         message.pop_back();
     return message + "; see " + command + " --help";

@@ -1,13 +1,13 @@
 #include "cli/render_options.h"
 
 #include "core/error.h"
-#include "image/read.h"
 #include "image/source.h"
 #include "lights/cut_lights.h"
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <charconv>
 
 namespace ibl {
 namespace {
@@ -29,6 +29,19 @@ std::vector<SceneLight> cutOf(Session& session, const LightArguments& arguments,
     return sceneLights(set);
 }
 
+/// Numbers that no file is likely to be named by, such as -3 and 2.5.
+bool isNumber(const std::string& text) {
+    double value = 0;
+    const char* end = text.data() + text.size();
+    const auto [last, problem] = std::from_chars(text.data(), end, value);
+    return problem == std::errc() && last == end;
+}
+
+Error notACount(const std::string& text) {
+    return usage("--lights " + text + ": a probe gives 1 to " + std::to_string(kMostLights) +
+                 " lights; give a number of these, or a file");
+}
+
 } // namespace
 
 bool isLightCount(const std::string& text) {
@@ -37,9 +50,14 @@ bool isLightCount(const std::string& text) {
 
 void requireLightUse(const LightArguments& arguments, const Material& material,
                      const PictureArguments& picture) {
-    const bool lit = shaderInfo(material.shader).lit;
-    const std::string shader(shaderInfo(material.shader).name);
+    const bool lit = !material.own && shaderInfo(material.shader).lit;
+    const std::string shader =
+        material.own ? material.own->name : std::string(shaderInfo(material.shader).name);
     if (arguments.lights.empty()) {
+        if (arguments.method || arguments.shadow_size) {
+            throw usage(std::string(arguments.method ? "--light-method" : "--shadow-size") +
+                        " is of --lights; give them, or leave it out");
+        }
         if (lit) throw usage("--shader " + shader + " is lit by lights; give --lights N or a file");
         if (arguments.ground) throw usage("--ground is lit by lights; give --lights N or a file");
         return;
@@ -54,14 +72,14 @@ void requireLightUse(const LightArguments& arguments, const Material& material,
                     "albedo; leave it out");
     }
     if (!isLightCount(arguments.lights)) {
+        if (isNumber(arguments.lights)) throw notACount(arguments.lights);
         if (arguments.method)
             throw usage("--light-method: a file's lights are cut already; leave it out");
         return;
     }
     if (arguments.lights.size() > 5 || std::stoi(arguments.lights) < 1 ||
         std::stoi(arguments.lights) > kMostLights) {
-        throw usage("--lights " + arguments.lights + ": a probe gives 1 to " +
-                    std::to_string(kMostLights) + " lights");
+        throw notACount(arguments.lights);
     }
 }
 
@@ -82,16 +100,6 @@ std::optional<Ground> groundOf(const LightArguments& arguments, const Scene& sce
     const double height = arguments.ground_height ? *arguments.ground_height
                                                   : lowestPoint(scene.object, scene.placement);
     return Ground{height, arguments.ground_albedo};
-}
-
-Image plateOf(Session& session, const std::string& name) {
-    session.addInput(name);
-    ReadOptions how;
-    how.threads = session.threads();
-    ImageFile file = session.stage("plate", [&] { return readImage(name, how); });
-    for (const std::string& text : file.notes)
-        session.note(name, text);
-    return std::move(file.image);
 }
 
 void reportLights(Session& session, const LightCounts& counts) {

@@ -115,7 +115,8 @@ void bindMethod(CLI::App& app, MaterialArguments& arguments) {
 void bindMaterial(CLI::App& app, MaterialArguments& arguments, FrameRange& frames) {
     app.add_option("--shader", arguments.shader,
                    "Material of the object: " + shaderNames() +
-                       "or a fragment shader FILE.frag (default mirror)")
+                       "or a fragment shader FILE.frag (default mirror); from lambert on they "
+                       "are lit by --lights, the others by the probe")
         ->check(CLI::Validator(
             [](const std::string& name) {
                 if (shaderFromName(name) || isShaderFile(name)) return std::string();
@@ -148,15 +149,21 @@ Material materialOf(const MaterialArguments& arguments, const std::optional<Shad
     for (const auto& [parameter, value] : arguments.values) {
         if (!hasParameter(material, parameter)) {
             throw Error(ExitCode::usage,
-                        "--" + std::string(parameterInfo(parameter).name) +
-                            (material.own ? " has no uniform " + uniformName(parameter) + " in " +
-                                                material.own->name
-                                          : " is of the shaders " + shadersWith(parameter)) +
+                        "--" + std::string(parameterInfo(parameter).name) + ": " +
+                            (material.own
+                                 ? material.own->name + " has no uniform " + uniformName(parameter)
+                                 : "--shader " + arguments.shader + " does not have it, but " +
+                                       shadersWith(parameter)) +
                             "; leave it out");
         }
         for (const Ramp& ramp : value)
             material.fixed = material.fixed && !ramp.moves();
         material[parameter] = V3d(value[0].at(place), value[1].at(place), value[2].at(place));
+    }
+    if (arguments.shader == "coat" && arguments.values.contains(Parameter::fresnel) &&
+        arguments.values.contains(Parameter::ior)) {
+        throw Error(ExitCode::usage, "--ior: coat refracts nothing, and --fresnel says how much it "
+                                     "mirrors; leave one of them out");
     }
     material.specular = methodOf(arguments, material);
     return material;

@@ -1,7 +1,6 @@
 #include "cli/render_options.h"
 
 #include "core/error.h"
-#include "image/read.h"
 
 #include <filesystem>
 
@@ -34,14 +33,11 @@ void addBaseTexture(Session& session, const std::string& path, Object& object) {
         throw Error(ExitCode::usage, "--base-texture: the object has no texture coordinates; leave "
                                      "it out, or give an object that has");
     }
-    session.addInput(path);
-    ReadOptions how;
-    how.threads = session.threads();
-    ImageFile file = session.stage("texture", [&] { return readImage(path, how); });
+    Image texture = session.readPicture(path, "texture");
     object.parts = partsOf(object);
     for (Part& part : object.parts)
         part.surface.base_texture = object.textures.size();
-    object.textures.push_back({std::move(file.image), Wrap::repeat, Wrap::repeat});
+    object.textures.push_back({std::move(texture), Wrap::repeat, Wrap::repeat});
 }
 
 ObjectFile readNamed(Session& session, const std::string& name) {
@@ -52,8 +48,8 @@ ObjectFile readNamed(Session& session, const std::string& name) {
         std::string names;
         for (const std::string_view known : builtinObjectNames())
             names.append(" ").append(known);
-        throw Error(ExitCode::usage, "--object " + name + ": no such object; there are" + names +
-                                         ", or an OBJ, PLY or glTF file");
+        throw inputError("--object " + name,
+                         "no such object; there are" + names + ", or an OBJ, PLY or glTF file");
     }
     ObjectFile file = session.stage("mesh", [&] { return readObject(name, session.threads()); });
     for (const std::string& path : file.files)

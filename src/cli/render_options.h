@@ -62,8 +62,8 @@ struct ObjectArguments {
 };
 void bindObject(CLI::App& app, ObjectArguments& arguments, FrameRange& frames);
 Placement placementOf(const ObjectArguments& arguments, const FramePlace& place);
-/// The object of that name, the arguments' own or a frame's, with the base texture. Throws Error
-/// (usage) where there is no such object.
+/// The object of that name, the arguments' own or a frame's, with the base texture. Throws
+/// inputError where there is no such object.
 ObjectFile objectOf(Session& session, const ObjectArguments& arguments, const std::string& name);
 
 struct TurnArguments {
@@ -160,7 +160,6 @@ std::vector<SceneLight> lightsOf(Session& session, const LightArguments& argumen
                                  const std::string& name, const Panorama& probe);
 /// Where nothing else is told it lies under the object as it stands.
 std::optional<Ground> groundOf(const LightArguments& arguments, const Scene& scene);
-Image plateOf(Session& session, const std::string& name);
 void reportLights(Session& session, const LightCounts& counts);
 
 } // namespace ibl

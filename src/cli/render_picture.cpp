@@ -1,10 +1,10 @@
 #include "cli/render_options.h"
 
 #include "core/error.h"
-#include "image/read.h"
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 
 namespace ibl {
@@ -23,14 +23,14 @@ void parseSize(const std::string& text, FrameOptions& frame) {
     }
 }
 
-/// `r,g,b`, if the text is three numbers.
+/// `r,g,b`, if the text is three numbers that may be radiance: finite, none negative.
 std::optional<V3f> colorFrom(const std::string& text) {
     V3f color;
     const char* at = text.data();
     const char* end = at + text.size();
     for (int c = 0; c < 3; ++c) {
         const auto [next, problem] = std::from_chars(at, end, color[c]);
-        if (problem != std::errc()) return std::nullopt;
+        if (problem != std::errc() || !(color[c] >= 0) || std::isinf(color[c])) return std::nullopt;
         at = next;
         if (c < 2 && (at == end || *at++ != ',')) return std::nullopt;
     }
@@ -97,16 +97,11 @@ Background backgroundOf(Session& session, const std::string& name) {
     if (const std::optional<V3f> color = colorFrom(name)) return *color;
     std::error_code ignored;
     if (name.find(',') != std::string::npos && !std::filesystem::exists(name, ignored)) {
-        throw Error(ExitCode::usage,
-                    "--background " + name + ": a colour is three numbers, such as 0.2,0.2,0.2");
+        throw Error(ExitCode::usage, "--background " + name +
+                                         ": a colour is three numbers from 0 to 3.4e38, such as "
+                                         "0.2,0.2,0.2");
     }
-    session.addInput(name);
-    ReadOptions how;
-    how.threads = session.threads();
-    ImageFile file = session.stage("background", [&] { return readImage(name, how); });
-    for (const std::string& text : file.notes)
-        session.note(name, text);
-    return std::move(file.image);
+    return session.readPicture(name, "background");
 }
 
 void bindPicture(CLI::App& app, PictureArguments& arguments) {

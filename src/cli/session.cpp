@@ -1,6 +1,7 @@
 #include "cli/session.h"
 
 #include "core/error.h"
+#include "image/read.h"
 #include "panorama/builtin.h"
 #include "panorama/census.h"
 #include "panorama/layouts.h"
@@ -110,6 +111,17 @@ ProbeFile Session::readUnscreened(const ProbeOptions& options) {
     for (const std::string& text : file.notes)
         note(options.input, text);
     return file;
+}
+
+Image Session::readPicture(const std::string& path, const char* stage_name) {
+    addInput(path);
+    ReadOptions how;
+    how.threads = threads();
+    how.finite = true;
+    ImageFile file = stage(stage_name, [&] { return readImage(path, how); });
+    for (const std::string& text : file.notes)
+        note(path, text);
+    return std::move(file.image);
 }
 
 Panorama Session::readProbe(const ProbeOptions& options) {

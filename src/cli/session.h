@@ -54,6 +54,10 @@ public:
     /// Reads the probe, tells what is in it and refuses or mends what is not finite.
     Panorama readProbe(const ProbeOptions& options);
 
+    /// Reads an image that is no probe, such as a texture, in a stage of that name. NaN and
+    /// infinite values are refused.
+    Image readPicture(const std::string& path, const char* stage_name);
+
     /// Reads the probe and says what was not plain in its file, whatever its pixels are.
     ProbeFile readUnscreened(const ProbeOptions& options);
     /// Mends what is not finite or negative and says how much it was.

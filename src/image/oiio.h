@@ -18,13 +18,13 @@ namespace ibl {
 ImageFile readOiio(const Source& source, const ReadOptions& options);
 
 /// Writes in the format that OpenImageIO knows under the extension `format`, with linear floats or
-/// halves where it takes them, otherwise 8 bits sRGB. Throws outputError, or
-/// Error(ExitCode::missing).
+/// halves where it takes them, otherwise 8 bits sRGB. Throws outputError, Error (usage) for a
+/// format that it does not know, or Error(ExitCode::missing).
 WriteLosses writeOiio(OutputFile& file, const Image& image, const std::string& format,
                       const WriteOptions& options);
 
 /// The module's boundary: C names, no exception across. They return whether they succeeded; if not,
-/// `error` says why.
+/// `error` says why. It is empty where there is no writer for the format.
 struct OiioModule {
     using Read = bool (*)(const std::string& path, const ReadOptions& options, ImageFile& file,
                           std::string& error) noexcept;

@@ -70,7 +70,9 @@ WriteLosses writeOiio(OutputFile& file, const Image& image, const std::string& f
     WriteLosses losses;
     std::string error;
     if (!module.write(file.temporaryPath(), image, format, options, losses, error)) {
-        throw outputError(file.path(), error);
+        if (!error.empty()) throw outputError(file.path(), error);
+        throw Error(ExitCode::usage, file.path() + ": there is no writer for '" + format +
+                                         "'; give a name that ends in .exr, .hdr, .png or .tif");
     }
     return losses;
 }

@@ -159,8 +159,7 @@ WriteLosses write(const std::string& path, const Image& image, const std::string
     const auto out = format == "term" || format == "null" ? nullptr : ImageOutput::create(format);
     if (!out) {
         OIIO::geterror();
-        throw std::runtime_error("there is no writer for '" + format +
-                                 "'; give a name that ends in .exr, .hdr, .png or .tif");
+        throw std::runtime_error(""); // as OiioModule::Write says
     }
     const bool tiff = out->format_name() == std::string("tiff");
     const bool as_half = tiff && options.type == PixelType::half;

@@ -47,6 +47,19 @@ Error outputErrno(const std::string& path, int error) {
     return outputError(path == "-" ? "standard output" : path, reason(error));
 }
 
+/// Why no file can be made in a folder, where the system finds the folder or a part of its path
+/// missing.
+std::string folderFault(const std::string& folder) {
+    std::error_code ignored;
+    if (fs::is_directory(folder, ignored)) return folder + " takes no files; choose another place";
+    for (fs::path part = folder; !part.empty() && part != part.parent_path();
+         part = part.parent_path()) {
+        if (fs::exists(part, ignored) && !fs::is_directory(part, ignored))
+            return part.string() + " is a file, not a folder; choose another place";
+    }
+    return "there is no folder " + folder + "; create it first";
+}
+
 /// write() or pwrite() of everything; returns 0 or errno.
 template <class Write>
 int writeAll(const char* data, std::size_t size, const Write& writeSome) {
@@ -184,9 +197,7 @@ void OutputFile::openBeside(std::size_t number) {
         if (errno == EEXIST) continue;
         const int error = errno;
         hidden_.clear();
-        if (error == ENOENT || error == ENOTDIR) {
-            throw outputError(path_, "there is no folder " + folder_ + "; create it first");
-        }
+        if (error == ENOENT || error == ENOTDIR) throw outputError(path_, folderFault(folder_));
         throw outputErrno(path_, error);
     }
 }
@@ -277,7 +288,8 @@ OutputFile& OutputSet::add(const std::string& path) {
         if ((path == "-" && other->path_ == "-") ||
             (files && other->name_ == file->name_ &&
              fs::equivalent(other->folder_, file->folder_, error))) {
-            throw outputError(path, "would be written twice; give the outputs different names");
+            throw Error(ExitCode::usage,
+                        path + ": would be written twice; give the outputs different names");
         }
     }
     return *files_.emplace_back(std::move(file));

@@ -67,9 +67,9 @@ public:
     ~OutputSet() = default;
 
     /// Opens a new file that shall become `path`. The reference lives as long as the set. Throws
-    /// outputError if `path` is a folder, lies in none, may not be written, or is in the set
-    /// already. Not to be called from several threads at once; writing to different files of a set
-    /// may be.
+    /// outputError if `path` is a folder, lies in none or may not be written; Error (usage) if it
+    /// is in the set already. Not to be called from several threads at once; writing to different
+    /// files of a set may be.
     OutputFile& add(const std::string& path);
 
     /// Gives all files their names, in the order in which they were added: add a report or a

@@ -43,9 +43,20 @@ ImageFile readSource(Source& source, const ReadOptions& options) {
     return readOiio(source, options);
 }
 
+void requireFinite(const std::string& name, const Image& image) {
+    const auto bad = std::ranges::find_if(image.pixels, [](float v) { return !std::isfinite(v); });
+    if (bad == image.pixels.end()) return;
+    const auto pixel = (bad - image.pixels.begin()) / image.channels;
+    throw inputError(name, "holds NaN or infinite values, the first at (" +
+                               std::to_string(pixel % image.width) + ", " +
+                               std::to_string(pixel / image.width) + "); mend it first");
+}
+
 ImageFile readOpened(Source source, const ReadOptions& options) {
     try {
-        return readSource(source, options);
+        ImageFile file = readSource(source, options);
+        if (options.finite) requireFinite(source.name, file.image);
+        return file;
     } catch (const std::bad_alloc&) {
         throw inputError(source.name, "does not fit into memory; shrink it first");
     }

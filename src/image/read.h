@@ -19,6 +19,7 @@ struct ReadOptions {
     /// Integer formats as they are, codes from 0 to 1, for what is no colour (a normal map); their
     /// alpha is not multiplied in.
     bool undecoded = false;
+    bool finite = false; ///< refuse an image that holds NaN or infinite values
 };
 
 struct ImageFile {
@@ -42,8 +43,8 @@ struct ImageFile {
 /// its display window; where its data window has no pixels it is 0.
 /// Throws inputError for a missing, empty or truncated file (parts and levels of an OpenEXR file
 /// that are not read may be damaged), a deep image, an unknown layer, an image of more than 65536
-/// pixels an edge or 2^30 pixels in all; and Error(ExitCode::missing) if OpenImageIO is needed and
-/// not there.
+/// pixels an edge or 2^30 pixels in all, values that ReadOptions::finite refuses; and
+/// Error(ExitCode::missing) if OpenImageIO is needed and not there.
 ImageFile readImage(const std::string& path, const ReadOptions& options = {});
 /// The same of a file's bytes; `name` is for messages.
 ImageFile readImage(std::vector<std::uint8_t> bytes, const std::string& name,

@@ -47,8 +47,8 @@ struct WriteLosses {
 /// exr; hdr, pic and rgbe (Radiance, run-length coded, RGB only); png (8 bits, sRGB); any other
 /// through OpenImageIO. Values are taken as scene-linear. "-" (standard output) needs
 /// `options.format`. The bytes depend on the pixels and options alone, not on time or threads.
-/// Throws outputError if the file cannot be written, or the format is unknown or cannot take the
-/// image; Error (usage) if nothing says the format or an option does not fit it; and
+/// Throws outputError if the file cannot be written, or the format cannot take the image; Error
+/// (usage) if nothing says the format, it is unknown or an option does not fit it; and
 /// Error(ExitCode::missing) if OpenImageIO is needed and not there.
 WriteLosses writeImage(OutputSet& outputs, const std::string& path, const Image& image,
                        const WriteOptions& options = {});

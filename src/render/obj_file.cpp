@@ -8,9 +8,12 @@
 #include <tiny_obj_loader.h>
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <string_view>
 #include <utility>
 
 namespace ibl {
@@ -58,8 +61,48 @@ void requireIndex(const std::string& path, int index, std::size_t values, std::s
                                " that the file does not have; export it again");
 }
 
+// How many numbers follow in a line before its end or a comment; none if a word is no number, or
+// not a finite one.
+std::optional<std::size_t> countNumbers(const char* at, const char* end) {
+    const auto isSpace = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
+    for (std::size_t count = 0;; ++count) {
+        at = std::find_if_not(at, end, isSpace);
+        if (at == end || *at == '#') return count;
+        if (*at == '+') ++at;
+        double value = 0;
+        const auto [next, problem] = std::from_chars(at, end, value);
+        if (problem != std::errc() || !std::isfinite(value)) return std::nullopt;
+        if (next != end && !isSpace(*next)) return std::nullopt;
+        at = next;
+    }
+}
+
+// The loader takes words that are no numbers for 0, and leaves what is missing 0.
+void requireNumbers(const std::string& path, std::istream& file) {
+    std::string line;
+    for (std::size_t number = 1; std::getline(file, line); ++number) {
+        const std::size_t begin = line.find_first_not_of(" \t");
+        if (begin == line.npos || line[begin] != 'v') continue;
+        const std::size_t space = line.find_first_of(" \t", begin);
+        if (space == line.npos) continue;
+        const std::string_view kind = std::string_view(line).substr(begin, space - begin);
+        if (kind != "v" && kind != "vn" && kind != "vt") continue;
+        const auto count = countNumbers(line.data() + space, line.data() + line.size());
+        if (!count || *count < (kind == "vt" ? 1 : 3)) {
+            throw inputError(
+                path + ":" + std::to_string(number),
+                std::string(kind) +
+                    (count ? " has too few numbers" : " has a word that is no number") +
+                    "; export it again");
+        }
+    }
+    file.clear();
+    file.seekg(0);
+}
+
 Parsed parse(const std::string& path, ObjectFile& result) {
     std::ifstream file(path);
+    requireNumbers(path, file);
     Parsed obj;
     std::string warning, error;
     MaterialFiles reader(fs::path(path).parent_path(), result);
@@ -143,6 +186,7 @@ std::optional<std::size_t> addTexture(const std::string& path, const std::string
     if (is_new) {
         ReadOptions how;
         how.threads = threads;
+        how.finite = true;
         result.object.textures.push_back({readImage(file, how).image, Wrap::repeat, Wrap::repeat});
         result.files.push_back(file);
     }

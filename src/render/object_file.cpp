@@ -34,7 +34,9 @@ ObjectFile readObject(const std::string& path, int threads) {
     }
     std::ifstream file(path, std::ios::binary);
     char head[64] = {};
-    if (!file) throw inputError(path, "cannot be read; check name and permissions");
+    if (!std::filesystem::exists(path, ignored))
+        throw inputError(path, "there is no such file; check the name");
+    if (!file) throw inputError(path, "cannot be read; check its permissions");
     file.read(head, sizeof head);
     const std::string_view begin(head, static_cast<std::size_t>(file.gcount()));
     file.clear();
@@ -44,6 +46,9 @@ ObjectFile readObject(const std::string& path, int threads) {
     }
     if (begin.starts_with("glTF") || (text != begin.npos && begin[text] == '{')) {
         return readGltf(path, readBytes(path, file), threads);
+    }
+    if (begin.find('\0') != begin.npos) {
+        throw inputError(path, "is none of OBJ, PLY and glTF; give one of these");
     }
     return readObj(path, threads);
 }

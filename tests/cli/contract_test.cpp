@@ -221,8 +221,36 @@ TEST(Contract, UnwritableTargets) {
     expectRefused(
         runTool({"bake", "builtin:furnace", "--size", "4", "-o", "no/folder"}, scratch.path()), 4,
         "no/folder");
-    expectRefused(runTool({"convert", "builtin:furnace", "-o", "o.xyz"}, scratch.path()), 4, "xyz");
-    EXPECT_EQ(scratch.names(), (Words{"folder"}));
+    // Said by what stands in the way, not by what was tried.
+    writeFile(scratch / "file", "");
+    expectRefused(runTool({"bake", "builtin:furnace", "--size", "4", "-o", "file"}, scratch.path()),
+                  4, "file: is a file; name a folder");
+    expectRefused(runTool({"convert", "builtin:furnace", "-o", "file/o.exr"}, scratch.path()), 4,
+                  "file is a file, not a folder");
+    expectRefused(runTool({"convert", "builtin:furnace", "-o", "/proc/o.exr"}, scratch.path()), 4,
+                  "/proc takes no files");
+    expectRefused(runTool({"convert", "builtin:furnace", "-o", "o.xyz"}, scratch.path()), 1, "xyz");
+    expectRefused(runTool({"convert", "builtin:furnace", "--to", "latlong", "-o", "o.exr",
+                           "--report", "o.exr"},
+                          scratch.path()),
+                  1, "o.exr: would be written twice");
+    EXPECT_EQ(scratch.names(), (Words{"file", "folder"}));
+}
+
+TEST(Contract, UsageIsRefusedInTheUsersWords) {
+    const Scratch scratch;
+    const auto refused = [&](Words words, const char* said) {
+        words.insert(words.begin(), "render");
+        words.insert(words.end(), {"--probe", "builtin:sky", "-o", "o.png"});
+        SCOPED_TRACE(said);
+        expectRefused(runTool(words, scratch.path()), 1, said);
+    };
+    refused({"--size", "8x8", "--size", "9x9"}, "--size: is given more than once");
+    refused({"--base-color", "1,1"}, "--base-color: takes 3 values, not 2");
+    refused({"--eye", "0..1,0,4"}, "--eye: '0..1,0,4' is no number");
+    refused({"--power", "3"}, "--power: there is no such option");
+    refused({"stray"}, "stray: is one word too many");
+    EXPECT_TRUE(scratch.names().empty());
 }
 
 TEST(Contract, AFailedRunLeavesTheOldFile) {

@@ -111,6 +111,15 @@ TEST_F(Obj, Refusals) {
     EXPECT_NE(refusalOf(kSquare + "f 1//5 2//5 3//5\n"), ""); // no such normal
     EXPECT_NE(refusalOf("v 0 0 0\nv 1e39 0 0\nv 0 1 0\nf 1 2 3\n"), "");
     EXPECT_NE(refusalOf("v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n"), "");
+    for (const char* word : {"abc", "zz", "-", "1e999", "inf", "1.5.2", "0x10"}) {
+        const std::string text = "v 0 0 0\nv 1 0 " + std::string(word) + "\nv 0 1 0\nf 1 2 3\n";
+        EXPECT_NE(refusalOf(text).find(": line 2: v has a word"), std::string::npos) << word;
+    }
+    EXPECT_NE(refusalOf("v 0 0 0\nv 1 0\nv 0 1 0\nf 1 2 3\n"), "");
+    EXPECT_NE(refusalOf(kSquare + "vn 0 0 x\nf 1//1 2//1 3//1\n"), "");
+    EXPECT_NE(refusalOf(kSquare + "vt zz 0\nf 1/1 2/1 3/1\n"), "");
+    EXPECT_EQ(load("v +0 0. .0 1 1 1\t# corner\r\nv\t1e0 0 0\nv 0 1 0\nf 1 2 3\n").indices.size(),
+              3u);
     std::string bytes;
     for (int i = 0; i < 5000; ++i)
         bytes += static_cast<char>(i * 7919 >> 3);
