@@ -101,6 +101,32 @@ TEST(Tonemap, ReadsFilesBuiltInProbesAndStandardInput) {
     EXPECT_EQ(toned(scratch, {"builtin:furnace"}).at(5, 5)[0], 1);
 }
 
+// What `render` writes beside the picture comes back by the names that its page gives.
+TEST(Tonemap, ReadsTheLayersThatRenderWrites) {
+    const Scratch scratch;
+    ASSERT_EQ(runTool({"render", "--probe", "builtin:furnace", "--object", "sphere", "--size",
+                       "9x9", "--aov", "normal,depth,id", "-o", "a.exr"},
+                      scratch.path())
+                  .exit_code,
+              0);
+    const auto middle = [&](const std::string& layer) {
+        const Image image = toned(scratch, {"a.exr", "--layer", layer});
+        const float* p = image.at(4, 4);
+        return std::vector<float>{p[0], p[1], p[2]};
+    };
+    const std::vector<float> normal = middle("normal"), depth = middle("depth");
+    // Unit, and towards the eye, which looks at the middle of the unit sphere.
+    EXPECT_NEAR(std::hypot(normal[0], normal[1], normal[2]), 1, 1e-5);
+    EXPECT_NE(normal[0], normal[2]);
+    EXPECT_GT(depth[0], 1);
+    EXPECT_LT(depth[0], 100);
+    EXPECT_EQ(depth, middle("depth.Z"));
+    EXPECT_EQ(middle("normal.Y"), std::vector<float>(3, normal[1]));
+    EXPECT_EQ(middle("id"), std::vector<float>(3, 1));
+    expectRefused(runTool({"tonemap", "a.exr", "--layer", "coat", "-o", "o.png"}, scratch.path()),
+                  2, "there is depth, normal, id");
+}
+
 TEST(Tonemap, KeepsAlpha) {
     const Scratch scratch;
     writeFile(scratch / "a.exr", readFile(testData("alpha.exr")));
