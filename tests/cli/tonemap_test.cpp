@@ -215,6 +215,43 @@ TEST(Tonemap, PngHasTheBitsThatAreAskedFor) {
     EXPECT_EQ(readFile(scratch / "d.png"), readFile(scratch / "e.png"));
 }
 
+// One line, of a picture or of all frames; silent where nothing clips, and with --quiet.
+TEST(Tonemap, PngSaysHowMuchClips) {
+    const Scratch scratch;
+    writeFile(scratch / "g.exr", readFile(testData("gradient.exr")));
+    const auto said = [&](Words words) {
+        const ToolResult result = runTool(words, scratch.path());
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+        return result.err;
+    };
+    const Image image = readImage((scratch / "g.exr").string()).image;
+    int values = 0, pixels = 0;
+    for (std::size_t i = 0; i < image.pixels.size(); i += 3) {
+        const int above = (image.pixels[i] > 1) + (image.pixels[i + 1] > 1);
+        values += above;
+        pixels += above > 0;
+    }
+    char share[32];
+    std::snprintf(share, sizeof share, "%.3g", 100.0 * pixels / 512);
+    const std::string clipped = std::to_string(values) + " values above 1 were written as 1 (" +
+                                share + " % of the pixels)";
+    for (const char* bits : {"8", "16"}) {
+        EXPECT_EQ(said({"tonemap", "g.exr", "--bits", bits, "-o", "o.png"}),
+                  "ibltool: o.png: " + clipped + "; try --exposure auto\n");
+    }
+    EXPECT_EQ(said({"tonemap", "g.exr", "--quiet", "-o", "o.png"}), "");
+    EXPECT_EQ(said({"tonemap", "g.exr", "--tonemap", "clamp", "-o", "o.png"}), "");
+    EXPECT_EQ(said({"tonemap", "g.exr", "-o", "o.exr"}), "");
+    const Words render{"render", "--probe", "builtin:furnace", "--size", "8x4", "--exposure", "1"};
+    Words one = render, all = render;
+    one.insert(one.end(), {"-o", "r.png"});
+    all.insert(all.end(), {"--frames", "1-3", "-o", "r%d.png"});
+    EXPECT_EQ(said(one), "ibltool: r.png: 96 values above 1 were written as 1 (100 % of the "
+                         "pixels); try --exposure auto\n");
+    EXPECT_EQ(said(all), "ibltool: r%d.png: 288 values above 1 were written as 1 (100 % of the "
+                         "pixels); try --exposure auto\n");
+}
+
 TEST(Tonemap, RefusesWhatHasNoEffectOrNoSense) {
     const Scratch scratch;
     const auto refused = [&](Words words, int code, const std::string& said,
@@ -239,7 +276,7 @@ TEST(Tonemap, RefusesWhatHasNoEffectOrNoSense) {
     refused({"--view", "x"}, 1, "--tonemap display");
     refused({"--tonemap", "display"}, 1, "PNG", "o.exr");
     refused({"--tonemap", "display", "--ocio-config", "missing.ocio"}, 2, "missing.ocio");
-    refused({"--tonemap", "display", "--view", "x"}, 2, "config");
+    refused({"--tonemap", "display", "--view", "x"}, 1, "$OCIO: is not set");
     refused({"--bits", "16"}, 1, "PNG", "o.exr");
     refused({"--bits", "12"}, 1, "--bits");
     refused({"--bloom", "1.5"}, 1, "--bloom");
