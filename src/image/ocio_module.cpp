@@ -146,7 +146,10 @@ ibltoolOcioLoad(const ibl::DisplayView& view, ibl::DisplayTransform& transform,
         error = problem.what();
         return ibl::ExitCode::usage;
     } catch (const std::exception& problem) {
-        error = std::string(problem.what()) + "; correct it, or give another config";
+        error = problem.what();
+        while (error.ends_with('.'))
+            error.pop_back();
+        error += "; correct it, or give another config";
         return ibl::ExitCode::input;
     }
 }
