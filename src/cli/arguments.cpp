@@ -53,7 +53,8 @@ void bindProbe(CLI::App& app, ProbeOptions& options, const std::string& as) {
         ->check(CLI::IsMember(layoutNames()))
         ->type_name("LAYOUT")
         ->group("Input");
-    app.add_option("--layer", options.layer, "Layer or part of a multi-layer EXR to read")
+    app.add_option("--layer", options.layer,
+                   "Layer, part or channel of an EXR to read; single channels are read as grey")
         ->type_name("NAME")
         ->group("Input");
     app.add_flag("--repair", options.repair,

@@ -190,10 +190,15 @@ void drawSequence(Session& session, const RenderOptions& options, const WriteOpt
         });
     }
     const auto written = session.stage("wait", [&] { return writer.finish(); });
+    WriteLosses losses;
     for (std::size_t i = 0; i < written.size(); ++i) {
-        session.noteWritten(names[i], written[i].losses, how);
+        losses += written[i].losses;
+        session.addOutput(names[i]);
         session.addSeconds("encode", written[i].seconds);
     }
+    const double pixels = static_cast<double>(drawing.frame.width) * drawing.frame.height;
+    noteShown(session, options.output.output, losses, options.display, how,
+              pixels * static_cast<double>(written.size()));
     session.results()["frames"] = std::move(frames);
 }
 
@@ -269,9 +274,11 @@ void runRender(const RenderOptions& options) {
         display.handOn();
         const std::string& name = options.output.output;
         session.stage("write", [&] {
-            session.noteWritten(
-                name, writeFrame(session.outputs(), name, options, drawn, how, session.threads()),
-                how);
+            const WriteLosses losses =
+                writeFrame(session.outputs(), name, options, drawn, how, session.threads());
+            noteShown(session, name, losses, options.display, how,
+                      static_cast<double>(frame.width) * frame.height);
+            session.addOutput(name);
         });
     }
     noteNotFinite(session, options.material.shader, drawing.bad_pixels);

@@ -117,7 +117,8 @@ Command bindTonemap(CLI::App& root) {
                     "builtin:furnace")
         ->required()
         ->type_name("");
-    app->add_option("--layer", options->layer, "Layer or part of a multi-layer EXR to read")
+    app->add_option("--layer", options->layer,
+                    "Layer, part or channel of an EXR to read; single channels are read as grey")
         ->type_name("NAME")
         ->group("Input");
     app->add_flag("--repair", options->repair,

@@ -8,6 +8,7 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <fstream>
 
 namespace ibl {
@@ -307,8 +308,25 @@ WriteLosses writeShown(OutputSet& outputs, const std::string& path, const Image&
     }
     const PngOptions png{arguments.bits.value_or(8), arguments.dither,
                          arguments.chain.tone_map == ToneMap::display};
-    writePng(outputs.add(path), picture, png, threads);
-    return {}; // pictures to look at clip
+    return writePng(outputs.add(path), picture, png, threads);
+}
+
+void noteShown(Session& session, const std::string& path, const WriteLosses& losses,
+               const DisplayArguments& arguments, const WriteOptions& how, double pixels) {
+    std::vector<std::string> lines = describeLosses(losses, path, how);
+    if (losses.bright_pixels > 0) {
+        char share[64];
+        std::snprintf(share, sizeof share, " (%.3g %% of the pixels)",
+                      100 * static_cast<double>(losses.bright_pixels) / pixels);
+        lines[0] += share;
+        if (!arguments.auto_exposure) {
+            lines[0] += "; try --exposure auto";
+        } else if (arguments.chain.tone_map == ToneMap::none) {
+            lines[0] += "; try a --tonemap";
+        }
+    }
+    for (const std::string& line : lines)
+        session.note(path, line);
 }
 
 void showPicture(Session& session, const EglContext& context, const DisplayArguments& arguments,
@@ -318,10 +336,11 @@ void showPicture(Session& session, const EglContext& context, const DisplayArgum
     display.show(picture, log_average);
     display.handOn();
     session.stage("write", [&] {
-        session.noteWritten(output.output,
-                            writeShown(session.outputs(), output.output, picture, arguments, how,
-                                       session.threads()),
-                            how);
+        const WriteLosses losses = writeShown(session.outputs(), output.output, picture, arguments,
+                                              how, session.threads());
+        noteShown(session, output.output, losses, arguments, how,
+                  static_cast<double>(picture.width) * picture.height);
+        session.addOutput(output.output);
     });
 }
 

@@ -70,6 +70,11 @@ private:
 WriteLosses writeShown(OutputSet& outputs, const std::string& path, const Image& picture,
                        const DisplayArguments& arguments, const WriteOptions& how, int threads);
 
+/// Says once, of a picture or of all frames together, what the file's format could not hold. A PNG
+/// says of how many of its `pixels` that is, and what would keep them.
+void noteShown(Session& session, const std::string& path, const WriteLosses& losses,
+               const DisplayArguments& arguments, const WriteOptions& how, double pixels);
+
 /// Shows one picture and adds it to the session's outputs, with the state of adaptation.
 void showPicture(Session& session, const EglContext& context, const DisplayArguments& arguments,
                  Image picture, std::optional<double> log_average, const ImageOutputOptions& output,

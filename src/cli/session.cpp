@@ -175,14 +175,9 @@ void Session::write(const std::string& path, const Panorama& panorama,
         addOutput(name);
 }
 
-void Session::noteWritten(const std::string& path, const WriteLosses& losses,
-                          const WriteOptions& options) {
-    reportLosses(losses, path, options);
-    addOutput(path);
-}
-
 void Session::write(const std::string& path, const Image& image, const WriteOptions& options) {
-    noteWritten(path, writeImage(outputs_, path, image, options), options);
+    reportLosses(writeImage(outputs_, path, image, options), path, options);
+    addOutput(path);
 }
 
 void Session::write(const std::string& path, std::span<const Image* const> levels,

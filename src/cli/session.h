@@ -73,9 +73,6 @@ public:
 
     OutputSet& outputs() { return outputs_; }
     void addOutput(const std::string& path) { output_names_.push_back(path); }
-    /// The same, and what the format could not hold of it.
-    void noteWritten(const std::string& path, const WriteLosses& losses,
-                     const WriteOptions& options);
     /// Adds to a stage's seconds what was spent on it beside the others.
     void addSeconds(const char* stage, double seconds) { stages_.emplace_back(stage, seconds); }
 

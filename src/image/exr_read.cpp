@@ -72,20 +72,15 @@ void noteChromaticities(const Imf::Header& header, std::vector<std::string>& not
 }
 
 struct Channels {
-    std::vector<std::string> names;
+    std::vector<std::string> names; ///< those of colour, then alpha
     Imf::PixelType type = Imf::FLOAT;
+    bool alpha = false;
 };
 
 Channels channelsOf(const Imf::Header& header, const ExrChoice& choice, bool alpha,
                     const std::string& name) {
-    Channels channels;
-    if (choice.colour == ExrColour::rgb) {
-        for (const char* c : {"R", "G", "B"})
-            channels.names.push_back(choice.prefix + c);
-    } else {
-        channels.names.push_back(choice.prefix + "Y");
-    }
-    channels.type = header.channels().findChannel(channels.names[0])->type;
+    Channels channels{choice.channels, header.channels()[choice.channels[0]].type};
+    channels.alpha = alpha;
     if (alpha) channels.names.push_back(choice.prefix + "A");
     for (const std::string& c : channels.names) {
         const Imf::Channel& channel = header.channels()[c];
@@ -150,8 +145,9 @@ void setFloats(Imf::InputPart& part, const Channels& channels, float* pixel, int
     const std::size_t x_stride = pixel_floats * sizeof(float);
     const std::size_t y_stride = row_pixels * x_stride;
     for (std::size_t c = 0; c < channels.names.size(); ++c) {
-        // Luminance goes to the first channel, alpha always to the fourth.
-        const std::size_t place = channels.names[c].ends_with("A") ? 3 : c;
+        // A single colour goes to the first channel, alpha always to the fourth.
+        const bool is_alpha = channels.alpha && c + 1 == channels.names.size();
+        const std::size_t place = is_alpha ? 3 : c;
         buffer.insert(channels.names[c],
                       Imf::Slice(Imf::FLOAT, sliceBase(pixel + place, x, y, x_stride, y_stride),
                                  x_stride, y_stride));
@@ -237,7 +233,7 @@ void readLuminanceChroma(Imf::IStream& stream, const ExrChoice& choice, int thre
     });
 }
 
-void spreadLuminance(Image& image, int threads) {
+void spreadGrey(Image& image, int threads) {
     parallelForRuns(image.height, 64, threads, [&](std::size_t first, std::size_t last) {
         for (std::size_t y = first; y < last; ++y) {
             float* p = image.row(static_cast<int>(y));
@@ -259,6 +255,8 @@ void describe(const std::vector<Imf::Header>& parts, const ExrChoice& choice,
     if (choice.alpha && !options.keep_alpha) file.notes.push_back("its alpha channel is ignored");
     if (choice.colour == ExrColour::luminance) {
         file.notes.push_back("is luminance only; read as grey");
+    } else if (choice.colour == ExrColour::grey) {
+        file.notes.push_back("its channel " + choice.channels[0] + " is read as grey");
     } else if (choice.colour == ExrColour::luminanceChroma) {
         file.notes.push_back("is luminance and subsampled chroma; colours are reconstructed");
     }
@@ -301,7 +299,7 @@ ImageFile readParts(Imf::IStream& stream, const std::string& name, const ReadOpt
         readLuminanceChroma(stream, choice, threads, target);
     } else {
         readChannels(input, choice, channels, target);
-        if (choice.colour == ExrColour::luminance) spreadLuminance(target.image, threads);
+        if (choice.channels.size() == 1) spreadGrey(target.image, threads);
     }
     clearOutside(target);
     describe(parts, choice, options, target, file);

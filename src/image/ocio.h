@@ -2,6 +2,8 @@
 // that is loaded when first needed (as OpenImageIO, see oiio.h).
 #pragma once
 
+#include "core/error.h"
+
 #include <string>
 #include <vector>
 
@@ -32,13 +34,14 @@ struct DisplayTransform {
     std::vector<ShaderLut> luts;
 };
 
-/// Throws Error: input when the config cannot be read or has no such space, display or view;
-/// missing when the module cannot be loaded.
+/// Throws Error: usage when the config has no such space, display or view (naming those it has), or
+/// there is no config to look them up in; input when it cannot be read or used; missing when the
+/// module cannot be loaded.
 DisplayTransform loadDisplayTransform(const DisplayView& view);
 
-/// The module's boundary, as OiioModule.
-using OcioLoad = bool (*)(const DisplayView& view, DisplayTransform& transform,
-                          std::string& error) noexcept;
+/// The module's boundary, as OiioModule: `done`, or the code and the text of an error.
+using OcioLoad = ExitCode (*)(const DisplayView& view, DisplayTransform& transform,
+                              std::string& error) noexcept;
 constexpr const char* kOcioLoadName = "ibltoolOcioLoad";
 
 } // namespace ibl

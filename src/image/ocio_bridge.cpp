@@ -18,8 +18,9 @@ DisplayTransform loadDisplayTransform(const DisplayView& view) {
                         "); install the package libopencolorio2.1");
     }
     DisplayTransform transform;
-    if (!load(view, transform, problem)) {
-        throw inputError(view.config.empty() ? "OpenColorIO" : view.config, problem);
+    const ExitCode code = load(view, transform, problem);
+    if (code != ExitCode::done) {
+        throw Error(code, (view.config.empty() ? "$OCIO" : view.config) + ": " + problem);
     }
     return transform;
 }

@@ -3,6 +3,7 @@
 
 #include <OpenColorIO/OpenColorIO.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <stdexcept>
 
@@ -28,16 +29,49 @@ OCIO::ConstProcessorRcPtr acesOutput() {
     return OCIO::Config::CreateRaw()->getProcessor(group);
 }
 
+/// What is asked for is not in the config.
+struct Unknown : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+/// `nameOf(i)` for all i below `count`, a dozen at most.
+template <class NameOf>
+std::string listed(int count, const NameOf& nameOf) {
+    std::string text;
+    for (int i = 0; i < std::min(count, 12); ++i)
+        text += (i == 0 ? "" : ", ") + std::string(nameOf(i));
+    return count > 12 ? text + " and " + std::to_string(count - 12) + " more" : text;
+}
+
+/// Inactive displays and views are taken, too, but not advertised.
+void requireKnown(const OCIO::Config& config, const std::string& space, const char* display,
+                  const char* view) {
+    if (!config.getColorSpace(space.c_str())) {
+        throw Unknown("has no colour space or role '" + space + "'; there is " +
+                      listed(config.getNumColorSpaces(),
+                             [&](int i) { return config.getColorSpaceNameByIndex(i); }));
+    }
+    if (config.getNumViews(OCIO::VIEW_DISPLAY_DEFINED, display) +
+            config.getNumViews(OCIO::VIEW_SHARED, display) ==
+        0) {
+        throw Unknown("has no display '" + std::string(display) + "'; there is " +
+                      listed(config.getNumDisplays(), [&](int i) { return config.getDisplay(i); }));
+    }
+    if (*config.getDisplayViewColorSpaceName(display, view) == '\0' &&
+        *config.getDisplayViewTransformName(display, view) == '\0') {
+        throw Unknown(
+            "has no view '" + std::string(view) + "' of the display '" + display + "'; there is " +
+            listed(config.getNumViews(display), [&](int i) { return config.getView(display, i); }));
+    }
+}
+
 OCIO::ConstProcessorRcPtr viewOf(const OCIO::ConstConfigRcPtr& config, const DisplayView& wanted) {
     const std::string space = wanted.space.empty() ? OCIO::ROLE_SCENE_LINEAR : wanted.space;
     const std::string display =
         wanted.display.empty() ? config->getDefaultDisplay() : wanted.display;
     const std::string view =
         wanted.view.empty() ? config->getDefaultView(display.c_str()) : wanted.view;
-    if (!config->getColorSpace(space.c_str())) {
-        throw std::runtime_error("has no colour space or role '" + space +
-                                 "'; name one with --ocio-space");
-    }
+    requireKnown(*config, space, display.c_str(), view.c_str());
     const OCIO::DisplayViewTransformRcPtr transform = OCIO::DisplayViewTransform::Create();
     transform->setSrc(space.c_str());
     transform->setDisplay(display.c_str());
@@ -46,17 +80,16 @@ OCIO::ConstProcessorRcPtr viewOf(const OCIO::ConstConfigRcPtr& config, const Dis
 }
 
 OCIO::ConstProcessorRcPtr processorOf(const DisplayView& view) {
-    const bool from_environment = view.config.empty() && std::getenv("OCIO");
-    if (view.config.empty() && !from_environment) {
-        if (!view.space.empty() || !view.display.empty() || !view.view.empty()) {
-            throw std::runtime_error("there is no config to look spaces, displays and views up in; "
-                                     "name one with --ocio-config or $OCIO");
-        }
-        return acesOutput();
+    const char* environment = std::getenv("OCIO");
+    if (!view.config.empty()) {
+        return viewOf(OCIO::Config::CreateFromFile(view.config.c_str()), view);
     }
-    return viewOf(from_environment ? OCIO::Config::CreateFromEnv()
-                                   : OCIO::Config::CreateFromFile(view.config.c_str()),
-                  view);
+    if (environment && *environment) return viewOf(OCIO::Config::CreateFromEnv(), view);
+    if (!view.space.empty() || !view.display.empty() || !view.view.empty()) {
+        throw Unknown("is not set, so there is no OpenColorIO config to look spaces, displays and "
+                      "views up in; set it to a config's file, or give one with --ocio-config");
+    }
+    return acesOutput();
 }
 
 void addTables(const OCIO::GpuShaderDesc& shader, DisplayTransform& transform) {
@@ -95,7 +128,7 @@ void addTables(const OCIO::GpuShaderDesc& shader, DisplayTransform& transform) {
 } // namespace
 } // namespace ibl
 
-extern "C" __attribute__((visibility("default"))) bool
+extern "C" __attribute__((visibility("default"))) ibl::ExitCode
 ibltoolOcioLoad(const ibl::DisplayView& view, ibl::DisplayTransform& transform,
                 std::string& error) noexcept {
     try {
@@ -108,9 +141,15 @@ ibltoolOcioLoad(const ibl::DisplayView& view, ibl::DisplayTransform& transform,
         processor->getDefaultGPUProcessor()->extractGpuShaderInfo(shader);
         transform.glsl = shader->getShaderText();
         ibl::addTables(*shader, transform);
-        return true;
+        return ibl::ExitCode::done;
+    } catch (const ibl::Unknown& problem) {
+        error = problem.what();
+        return ibl::ExitCode::usage;
     } catch (const std::exception& problem) {
         error = problem.what();
-        return false;
+        while (error.ends_with('.'))
+            error.pop_back();
+        error += "; correct it, or give another config";
+        return ibl::ExitCode::input;
     }
 }

@@ -149,6 +149,8 @@ WriteLosses encodeRowByTable(const float* row, std::size_t values, std::uint8_t*
     WriteLosses losses;
     for (std::size_t i = 0; i < values; ++i)
         count(losses, row[i]);
+    for (std::size_t i = 0; losses.above > 0 && i < values; i += 3)
+        losses.bright_pixels += row[i] > 1 || row[i + 1] > 1 || row[i + 2] > 1;
     return losses;
 }
 
@@ -170,12 +172,14 @@ WriteLosses encodeRow(const Image& image, int y, const PngOptions& options, std:
             alpha = std::clamp(std::isnan(p[3]) ? 0.0F : p[3], 0.0F, 1.0F);
             unpremultiply = alpha > 0 ? 1 / alpha : 0;
         }
+        const std::size_t above = losses.above;
         for (int c = 0; c < 3; ++c) {
             const float v = p[c] * unpremultiply;
             const double threshold = options.dither ? ditherThreshold(x, y) : 0.5;
             put(plain ? linearToSrgb8(v) : codeOf(v, options, threshold));
             count(losses, v);
         }
+        losses.bright_pixels += losses.above > above;
         if (image.channels == 4) {
             put(static_cast<std::uint32_t>(alpha * static_cast<float>((1 << options.bits) - 1) +
                                            0.5F));

@@ -49,6 +49,7 @@ WriteLosses& WriteLosses::operator+=(const WriteLosses& other) {
     above += other.above;
     below += other.below;
     not_number += other.not_number;
+    bright_pixels += other.bright_pixels;
     return *this;
 }
 

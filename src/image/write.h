@@ -39,6 +39,7 @@ struct WriteLosses {
     std::size_t below = 0;      ///< negative where the format has no negatives (written as 0), or
                                 ///< under the lowest that it has (written as that)
     std::size_t not_number = 0; ///< NaN where the format has none: written as 0
+    std::size_t bright_pixels = 0; ///< of PNG: with a channel among those above
 
     WriteLosses& operator+=(const WriteLosses& other);
 };

@@ -101,6 +101,32 @@ TEST(Tonemap, ReadsFilesBuiltInProbesAndStandardInput) {
     EXPECT_EQ(toned(scratch, {"builtin:furnace"}).at(5, 5)[0], 1);
 }
 
+// What `render` writes beside the picture comes back by the names that its page gives.
+TEST(Tonemap, ReadsTheLayersThatRenderWrites) {
+    const Scratch scratch;
+    ASSERT_EQ(runTool({"render", "--probe", "builtin:furnace", "--object", "sphere", "--size",
+                       "9x9", "--aov", "normal,depth,id", "-o", "a.exr"},
+                      scratch.path())
+                  .exit_code,
+              0);
+    const auto middle = [&](const std::string& layer) {
+        const Image image = toned(scratch, {"a.exr", "--layer", layer});
+        const float* p = image.at(4, 4);
+        return std::vector<float>{p[0], p[1], p[2]};
+    };
+    const std::vector<float> normal = middle("normal"), depth = middle("depth");
+    // Unit, and towards the eye, which looks at the middle of the unit sphere.
+    EXPECT_NEAR(std::hypot(normal[0], normal[1], normal[2]), 1, 1e-5);
+    EXPECT_NE(normal[0], normal[2]);
+    EXPECT_GT(depth[0], 1);
+    EXPECT_LT(depth[0], 100);
+    EXPECT_EQ(depth, middle("depth.Z"));
+    EXPECT_EQ(middle("normal.Y"), std::vector<float>(3, normal[1]));
+    EXPECT_EQ(middle("id"), std::vector<float>(3, 1));
+    expectRefused(runTool({"tonemap", "a.exr", "--layer", "coat", "-o", "o.png"}, scratch.path()),
+                  2, "there is depth, normal, id");
+}
+
 TEST(Tonemap, KeepsAlpha) {
     const Scratch scratch;
     writeFile(scratch / "a.exr", readFile(testData("alpha.exr")));
@@ -189,6 +215,43 @@ TEST(Tonemap, PngHasTheBitsThatAreAskedFor) {
     EXPECT_EQ(readFile(scratch / "d.png"), readFile(scratch / "e.png"));
 }
 
+// One line, of a picture or of all frames; silent where nothing clips, and with --quiet.
+TEST(Tonemap, PngSaysHowMuchClips) {
+    const Scratch scratch;
+    writeFile(scratch / "g.exr", readFile(testData("gradient.exr")));
+    const auto said = [&](Words words) {
+        const ToolResult result = runTool(words, scratch.path());
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+        return result.err;
+    };
+    const Image image = readImage((scratch / "g.exr").string()).image;
+    int values = 0, pixels = 0;
+    for (std::size_t i = 0; i < image.pixels.size(); i += 3) {
+        const int above = (image.pixels[i] > 1) + (image.pixels[i + 1] > 1);
+        values += above;
+        pixels += above > 0;
+    }
+    char share[32];
+    std::snprintf(share, sizeof share, "%.3g", 100.0 * pixels / 512);
+    const std::string clipped = std::to_string(values) + " values above 1 were written as 1 (" +
+                                share + " % of the pixels)";
+    for (const char* bits : {"8", "16"}) {
+        EXPECT_EQ(said({"tonemap", "g.exr", "--bits", bits, "-o", "o.png"}),
+                  "ibltool: o.png: " + clipped + "; try --exposure auto\n");
+    }
+    EXPECT_EQ(said({"tonemap", "g.exr", "--quiet", "-o", "o.png"}), "");
+    EXPECT_EQ(said({"tonemap", "g.exr", "--tonemap", "clamp", "-o", "o.png"}), "");
+    EXPECT_EQ(said({"tonemap", "g.exr", "-o", "o.exr"}), "");
+    const Words render{"render", "--probe", "builtin:furnace", "--size", "8x4", "--exposure", "1"};
+    Words one = render, all = render;
+    one.insert(one.end(), {"-o", "r.png"});
+    all.insert(all.end(), {"--frames", "1-3", "-o", "r%d.png"});
+    EXPECT_EQ(said(one), "ibltool: r.png: 96 values above 1 were written as 1 (100 % of the "
+                         "pixels); try --exposure auto\n");
+    EXPECT_EQ(said(all), "ibltool: r%d.png: 288 values above 1 were written as 1 (100 % of the "
+                         "pixels); try --exposure auto\n");
+}
+
 TEST(Tonemap, RefusesWhatHasNoEffectOrNoSense) {
     const Scratch scratch;
     const auto refused = [&](Words words, int code, const std::string& said,
@@ -213,7 +276,7 @@ TEST(Tonemap, RefusesWhatHasNoEffectOrNoSense) {
     refused({"--view", "x"}, 1, "--tonemap display");
     refused({"--tonemap", "display"}, 1, "PNG", "o.exr");
     refused({"--tonemap", "display", "--ocio-config", "missing.ocio"}, 2, "missing.ocio");
-    refused({"--tonemap", "display", "--view", "x"}, 2, "config");
+    refused({"--tonemap", "display", "--view", "x"}, 1, "$OCIO: is not set");
     refused({"--bits", "16"}, 1, "PNG", "o.exr");
     refused({"--bits", "12"}, 1, "--bits");
     refused({"--bloom", "1.5"}, 1, "--bloom");

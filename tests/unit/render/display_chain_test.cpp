@@ -1,14 +1,12 @@
-// Lens effects, and the tone maps that look at neighbours.
+// Lens effects: bloom, glare, streaks, vignette; and pictures that go by tiles.
 #include "display_support.h"
 
 #include "core/error.h"
-#include "render/exposure.h"
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <functional>
-#include <limits>
 
 namespace ibl {
 namespace {
@@ -196,158 +194,6 @@ TEST(Effects, WhatCannotBeIsRefused) {
     EXPECT_EQ(code([](O& o, double) { o.vignette = 0.5; }, 4), ExitCode::done);
 }
 
-/// A scene of wide range: a gradient with a lamp of 1e4 and a dark corner.
-Image lampScene(int width, int height) {
-    Image picture(width, height);
-    for (int y = 0; y < height; ++y) {
-        for (int x = 0; x < width; ++x) {
-            const float ripple = 1 + 0.5F * std::sin(0.7F * static_cast<float>(x + 2 * y));
-            const float base = std::exp2(static_cast<float>(x) / 10) * 0.02F * ripple;
-            const bool lamp = std::hypot(x - 0.6 * width, y - 0.4 * height) < 4;
-            for (int c = 0; c < 3; ++c)
-                picture.at(x, y)[c] = lamp ? 1e4F : base * (1 + 0.3F * static_cast<float>(c));
-        }
-    }
-    return picture;
-}
-
-// The weights of each Gaussian, normalised, the picture going on as its mirror image.
-std::vector<double> blurredExactly(const std::vector<double>& in, int n, int stride, int lines,
-                                   int line_stride, double deviation) {
-    std::vector<double> out(in.size());
-    const int reach = static_cast<int>(6 * deviation) + 1;
-    for (int line = 0; line < lines; ++line) {
-        for (int i = 0; i < n; ++i) {
-            double sum = 0, weights = 0;
-            for (int k = -reach; k <= reach; ++k) {
-                const double weight = std::exp(-0.5 * k * k / (deviation * deviation));
-                int j = ((i + k) % (2 * n) + 2 * n) % (2 * n);
-                if (j >= n) j = 2 * n - 1 - j;
-                sum += weight * in[static_cast<std::size_t>(line * line_stride + j * stride)];
-                weights += weight;
-            }
-            out[static_cast<std::size_t>(line * line_stride + i * stride)] = sum / weights;
-        }
-    }
-    return out;
-}
-
-TEST(Retinex, IsItsFormulaOverTrueGaussians) {
-    const int width = 120, height = 81;
-    const Image picture = lampScene(width, height);
-    const double k = 0.8, f = 2, eps = 0.01, narrow = 0.05, wide = 0.3;
-    const int scales = 3;
-    const Image seen =
-        displayed(ToneMap::retinex, {k, f, eps, scales, narrow, wide}, Per::channel, picture);
-    for (int c = 0; c < 3; c += 2) {
-        std::vector<double> channel;
-        for (int i = 0; i < width * height; ++i)
-            channel.push_back(picture.pixels[static_cast<std::size_t>(3 * i + c)]);
-        std::vector<double> logs(channel.size());
-        double weights = 0;
-        for (int n = 0; n < scales; ++n)
-            weights += std::pow(scales - n, f);
-        for (int n = 0; n < scales; ++n) {
-            const double deviation =
-                height * narrow * std::pow(wide / narrow, static_cast<double>(n) / (scales - 1));
-            const auto across = blurredExactly(channel, width, 1, height, width, deviation);
-            const auto both = blurredExactly(across, height, width, width, 1, deviation);
-            for (std::size_t i = 0; i < logs.size(); ++i) {
-                logs[i] += std::pow(scales - n, f) / weights *
-                           (std::log(channel[i] + eps) - k * std::log(both[i] + eps));
-            }
-        }
-        double worst = 0, sum = 0;
-        for (std::size_t i = 0; i < logs.size(); ++i) {
-            const double exact = std::exp(logs[i]);
-            const double error = seen.pixels[3 * i + static_cast<std::size_t>(c)] / exact - 1;
-            worst = std::max(worst, std::abs(error));
-            sum += std::abs(error);
-        }
-        // The pyramid's Gaussians are nearly so; they differ most in the tails about the lamp.
-        EXPECT_LT(worst, 0.15);
-        EXPECT_LT(sum / static_cast<double>(logs.size()), 0.01);
-    }
-}
-
-TEST(Retinex, FlatPicturesHaveAClosedForm) {
-    for (const float x : {0.0F, 1e-3F, 0.18F, 1e4F}) {
-        const Image seen = displayed(ToneMap::retinex, standardParameters(ToneMap::retinex),
-                                     Per::channel, flat(33, 20, x));
-        const double exact = std::pow(x + 1e-3, 0.5);
-        for (const float v : seen.pixels)
-            ASSERT_NEAR(v / exact, 1, 3e-5);
-    }
-}
-
-// The operator in plain loops: Gaussian pyramid by 1 5 8 5 1 / 20, bilinear between samples.
-struct Level {
-    int width, height;
-    std::vector<double> values;
-    double at(int x, int y) const {
-        x = std::clamp(x, 0, width - 1);
-        y = std::clamp(y, 0, height - 1);
-        return values[static_cast<std::size_t>(y * width + x)];
-    }
-};
-
-Level nextLevel(const Level& fine, int width, int height) {
-    const double w[] = {0.05, 0.25, 0.4, 0.25, 0.05};
-    Level made{width, height, {}};
-    for (int y = 0; y < height; ++y) {
-        for (int x = 0; x < width; ++x) {
-            double sum = 0;
-            for (int j = 0; j < 5; ++j) {
-                for (int i = 0; i < 5; ++i)
-                    sum += w[i] * w[j] * fine.at(2 * x + i - 2, 2 * y + j - 2);
-            }
-            made.values.push_back(sum);
-        }
-    }
-    return made;
-}
-
-TEST(ReinhardLocal, IsDodgingAndBurning) {
-    const int width = 150, height = 101;
-    const Image picture = lampScene(width, height);
-    const double phi = 8, contrast = 0.05, key = 0.18;
-    DisplayOptions options;
-    options.tone_map = ToneMap::reinhardLocal;
-    options.parameters = {phi, contrast};
-    options.key = key;
-    const Image seen = shown(options, picture);
-    std::vector<Level> levels{{width, height, {}}};
-    for (int i = 0; i < width * height; ++i) {
-        const float* p = &picture.pixels[static_cast<std::size_t>(3 * i)];
-        levels[0].values.push_back(0.2126 * p[0] + 0.7152 * p[1] + 0.0722 * p[2]);
-    }
-    for (int k = 1, w = 128, h = 128; k < 8; ++k, w /= 2, h /= 2)
-        levels.push_back(nextLevel(levels.back(), w, h));
-    const auto between = [&](int x, int y, int k) {
-        const Level& level = levels[static_cast<std::size_t>(k)];
-        const int step = 1 << k, i = x / step, j = y / step;
-        const double s = static_cast<double>(x - i * step) / step;
-        const double t = static_cast<double>(y - j * step) / step;
-        return (1 - t) * ((1 - s) * level.at(i, j) + s * level.at(i + 1, j)) +
-               t * ((1 - s) * level.at(i, j + 1) + s * level.at(i + 1, j + 1));
-    };
-    int wrong = 0;
-    for (int y = 0; y < height; ++y) {
-        for (int x = 0; x < width; ++x) {
-            double v = between(x, y, 0);
-            for (int k = 0; k < 7; ++k) {
-                const double s = std::pow(43, k / 8.0), surround = between(x, y, k + 1);
-                if (std::abs(v - surround) / (std::pow(2, phi) * key / (s * s) + v) > contrast)
-                    break;
-                v = surround;
-            }
-            const double exact = picture.at(x, y)[1] / (1 + v);
-            wrong += std::abs(seen.at(x, y)[1] / exact - 1) > 1e-4;
-        }
-    }
-    EXPECT_LE(wrong, 15); // a contrast within rounding of the limit may fall either way
-}
-
 // Pictures that go by tiles are the same as those that fit.
 TEST(Tiles, DoNotShow) {
     const Image picture = lampScene(150, 101);
@@ -370,55 +216,6 @@ TEST(Tiles, DoNotShow) {
             }
         }
     }
-}
-
-TEST(Exposure, LogAverageIsExact) {
-    const float largest = std::numeric_limits<float>::max();
-    // 2^21 pixels of 1e-3 and 1e9, a third of them bright: in logarithms 2/3 ln 1e-3 + 1/3 ln 1e9.
-    Image picture(3 * 1024, 512);
-    for (std::size_t i = 0; i < picture.pixels.size() / 3; ++i) {
-        for (std::size_t c = 0; c < 3; ++c)
-            picture.pixels[3 * i + c] = i % 3 == 0 ? 1e9F : 1e-3F;
-    }
-    const double delta = 1e-5;
-    const double expected = std::exp((2 * std::log(delta + 1e-3F) + std::log(delta + 1e9)) / 3);
-    const double got = takePictureCensus(picture, delta, 1).log_average;
-    EXPECT_NEAR(got / expected, 1, 1e-9);
-    EXPECT_EQ(takePictureCensus(picture, delta, 3).log_average, got);
-    EXPECT_NEAR(takePictureCensus(flat(10, 10, largest), 1e-30, 1).log_average / largest, 1, 1e-9);
-    EXPECT_NEAR(takePictureCensus(flat(10, 10, 0), 1e-30, 1).log_average / 1e-30, 1, 1e-9);
-}
-
-TEST(Exposure, BadPixelsAreCountedAndCountAsBlack) {
-    Image picture = flat(4, 1, 1);
-    picture.at(0, 0)[1] = std::nanf("");
-    picture.at(1, 0)[2] = -std::numeric_limits<float>::infinity();
-    picture.at(2, 0)[0] = -5;
-    const PictureCensus census = takePictureCensus(picture, 1, 1);
-    EXPECT_EQ(census.nan, 1u);
-    EXPECT_EQ(census.infinite, 1u);
-    EXPECT_EQ(census.negative, 1u);
-    // Luminance 0, 0, 0 (negative) and 1.
-    EXPECT_NEAR(census.log_average, std::pow(2, 0.25), 1e-6);
-}
-
-TEST(Exposure, AlphaWeighs) {
-    Image picture(2, 1, 4);
-    for (int c = 0; c < 3; ++c) {
-        picture.at(0, 0)[c] = 2; // straight 4
-        picture.at(1, 0)[c] = 0;
-    }
-    picture.at(0, 0)[3] = 0.5F;
-    picture.at(1, 0)[3] = 0;
-    EXPECT_NEAR(takePictureCensus(picture, 1e-6, 1).log_average, 4, 1e-4);
-}
-
-TEST(Exposure, WhatIsMissingHalvesEachHalfLife) {
-    double state = 1;
-    for (int frame = 0; frame < 6; ++frame)
-        state = adapted(state, 16, 3); // two half-lives, four stops away
-    EXPECT_NEAR(std::log2(state), 3, 1e-9);
-    EXPECT_EQ(adapted(1, 16, 0), 16);
 }
 
 } // namespace

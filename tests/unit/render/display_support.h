@@ -5,6 +5,7 @@
 
 #include "render/display_chain.h"
 
+#include <cmath>
 #include <vector>
 
 namespace ibl {
@@ -46,6 +47,21 @@ inline double total(const Image& picture) {
     for (const float v : picture.pixels)
         sum += v;
     return sum;
+}
+
+/// A scene of wide range: a gradient with a lamp of 1e4 and a dark corner.
+inline Image lampScene(int width, int height) {
+    Image picture(width, height);
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+            const float ripple = 1 + 0.5F * std::sin(0.7F * static_cast<float>(x + 2 * y));
+            const float base = std::exp2(static_cast<float>(x) / 10) * 0.02F * ripple;
+            const bool lamp = std::hypot(x - 0.6 * width, y - 0.4 * height) < 4;
+            for (int c = 0; c < 3; ++c)
+                picture.at(x, y)[c] = lamp ? 1e4F : base * (1 + 0.3F * static_cast<float>(c));
+        }
+    }
+    return picture;
 }
 
 } // namespace ibl

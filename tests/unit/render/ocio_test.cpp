@@ -111,19 +111,27 @@ TEST_F(OcioConfig, ViewsAreOpenColorIosOwn) {
 }
 
 TEST_F(OcioConfig, WhatIsNotInItIsRefused) {
-    const auto code = [&](const DisplayView& view) {
+    const auto expectRefused = [](const DisplayView& view, ExitCode code, const char* said) {
         try {
             loadDisplayTransform(view);
         } catch (const Error& error) {
-            return error.code();
+            EXPECT_EQ(error.code(), code) << error.what();
+            EXPECT_NE(std::string(error.what()).find(said), std::string::npos) << error.what();
+            return;
         }
-        return ExitCode::done;
+        ADD_FAILURE() << "not refused: " << said;
     };
-    EXPECT_EQ(code({path(), "", "", ""}), ExitCode::done);
-    EXPECT_EQ(code({path(), "nowhere", "", ""}), ExitCode::input);
-    EXPECT_EQ(code({path(), "", "wall", ""}), ExitCode::input);
-    EXPECT_EQ(code({path(), "", "", "sideways"}), ExitCode::input);
-    EXPECT_EQ(code({path() + "x", "", "", ""}), ExitCode::input);
+    EXPECT_NO_THROW(loadDisplayTransform({path(), "", "", ""}));
+    expectRefused({path(), "nowhere", "", ""}, ExitCode::usage,
+                  "config.ocio: has no colour space or role 'nowhere'; there is lin, cube, curve");
+    expectRefused({path(), "", "wall", ""}, ExitCode::usage,
+                  "config.ocio: has no display 'wall'; there is screen");
+    expectRefused({path(), "", "", "sideways"}, ExitCode::usage,
+                  "has no view 'sideways' of the display 'screen'; there is cube, curve");
+    expectRefused({path() + "x", "", "", ""}, ExitCode::input, "config.ociox: ");
+    std::ofstream(folder_ / "broken.ocio") << "ocio_profile_version: [";
+    expectRefused({(folder_ / "broken.ocio").string(), "", "", ""}, ExitCode::input,
+                  "give another config");
 }
 
 TEST(Ocio, WithoutAConfigItIsTheAcesOutputTransform) {
