@@ -21,11 +21,14 @@ Error usage(const std::string& problem) {
     return {ExitCode::usage, "render: " + problem};
 }
 
-int shadowSize(const FrameOptions& options) {
+// The more lights, the less it shows how fine the map of each is.
+int shadowSize(const FrameOptions& options, std::size_t lights) {
     if (options.shadow_size > 0) return options.shadow_size;
     int size = 256;
     while (size < 2048 && 4 * size < 3 * options.height)
         size *= 2;
+    while (size > 256 && std::min(lights, Lighting::mapsAtOnce(256)) > Lighting::mapsAtOnce(size))
+        size /= 2;
     return size;
 }
 
@@ -66,7 +69,8 @@ void Renderer::State::uploadScene(const Scene& scene) {
     if (!lit && !ground) return;
     if (scene.lights.empty()) throw usage("nothing lights the picture; give lights");
     light_scene = &scene;
-    lighting.emplace(scene, shadowSize(options), options.shader_folder);
+    lighting.emplace(scene, shadowSize(options, scene.lights.size()), options.samples,
+                     options.shader_folder);
 }
 
 void Renderer::State::uploadLobe(const Scene& scene) {
