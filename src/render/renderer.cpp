@@ -21,13 +21,15 @@ Error usage(const std::string& problem) {
     return {ExitCode::usage, "render: " + problem};
 }
 
-// The more lights, the less it shows how fine the map of each is.
-int shadowSize(const FrameOptions& options, std::size_t lights) {
+// On the ground, the more lights, the less it shows how fine the map of each is. On a lit object it
+// shows: 256 lights' maps of 512 texels are off by 2.5 times as much as those of 1024.
+int shadowSize(const FrameOptions& options, bool lit, std::size_t lights) {
     if (options.shadow_size > 0) return options.shadow_size;
     int size = 256;
     while (size < 2048 && 4 * size < 3 * options.height)
         size *= 2;
-    while (size > 256 && std::min(lights, Lighting::mapsAtOnce(256)) > Lighting::mapsAtOnce(size))
+    while (!lit && size > 256 &&
+           std::min(lights, Lighting::mapsAtOnce(256)) > Lighting::mapsAtOnce(size))
         size /= 2;
     return size;
 }
@@ -69,7 +71,7 @@ void Renderer::State::uploadScene(const Scene& scene) {
     if (!lit && !ground) return;
     if (scene.lights.empty()) throw usage("nothing lights the picture; give lights");
     light_scene = &scene;
-    lighting.emplace(scene, shadowSize(options, scene.lights.size()), options.samples,
+    lighting.emplace(scene, shadowSize(options, lit, scene.lights.size()), options.samples,
                      options.shader_folder);
 }
 

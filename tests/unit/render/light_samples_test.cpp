@@ -102,7 +102,7 @@ TEST_F(GroundUnderLights, SpreadLightsGiveTheSumOfThoseThatAreNot) {
         darkest = std::min(darkest, 1 - kept[i]);
     }
     EXPECT_LT(std::sqrt(error / norm), 2e-3);
-    EXPECT_LT(darkest, 0.9);
+    EXPECT_LT(darkest, 0.95); // there is a shadow
     std::printf("256 lights over 16 samples: relative RMSE %.1e\n", std::sqrt(error / norm));
 }
 
