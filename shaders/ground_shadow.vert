@@ -1,4 +1,4 @@
-// For each shadow map the part of the ground that it covers: what the light sees through the corners of
+// For each shadow map of the sample's lights the part of the ground that it covers: what the light sees through the corners of
 // the map. A corner's ray runs from A (depth 0) to B (depth 1); with g the height above the ground it meets
 // it at (gA B - gB A) / (gA - gB), kept homogeneous, so that rays which rise (w <= 0) are clipped.
 uniform mat4 clip_from_world;
@@ -9,8 +9,14 @@ flat out vec4 light_place, light_strength, light_axis, light_maps;
 flat out int layer;
 
 void main() {
-    View view = views[gl_InstanceID];
-    Light light = lights[int(view.light.x)];
+#if LOCAL_LIGHTS
+    layer = gl_InstanceID;
+    Light light = lights[int(views[layer].light.x)];
+#else
+    Light light = lights[gl_InstanceID];
+    layer = int(light.maps.x);
+#endif
+    View view = views[layer];
     vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1) * map_size;
     // Six maps overlap by their margins, kMargin of render/shadow_views.cpp.
     if (light.maps.y > 1.0) corner = clamp(corner, vec2(2.0), map_size - 2.0);
@@ -24,7 +30,6 @@ void main() {
     light_strength = light.strength;
     light_axis = light.axis;
     light_maps = light.maps;
-    layer = gl_InstanceID;
     gl_ClipDistance[0] = p.w;
     gl_Position = clip_from_world * p;
     gl_Position.z = 0.0; // no near or far plane

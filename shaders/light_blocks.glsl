@@ -1,4 +1,4 @@
-// A batch of the scene's lights and their shadow maps. Defined: LIGHT_CAPACITY; LOCAL_LIGHTS, whether point
+// The lights of a sample, of a batch of the scene's lights, and the shadow maps of the batch. Defined: LIGHT_CAPACITY; LOCAL_LIGHTS, whether point
 // and spot lights are among them; SHADOW_MAPS, whether the object casts its shadow by maps. Without maps it
 // is a sphere.
 struct Light {
@@ -10,7 +10,7 @@ struct Light {
 struct View {
     mat4 map_from_world;    // texels and depth, after division by w
     vec4 world_from_map[4]; // rows of the inverse, as row vectors multiply
-    vec4 light;             // x: whose; y, z: of a directional light, the change of depth with u and v in
+    vec4 light;             // x: whose, where LOCAL_LIGHTS; y, z: of a directional light, the change of depth with u and v in
                             // texels over that of the distance along the light, times texels a unit
 };
 layout(std140, binding = 0) uniform Lights { Light lights[LIGHT_CAPACITY]; };

@@ -27,9 +27,8 @@ vec3 towards(Light light, vec3 p, out vec3 irradiance, out float distance) {
 
 // Directional lights have a map each.
 int layerOf(int i, vec3 p) {
-    int layer = i;
+    int layer = int(lights[i].maps.x);
 #if LOCAL_LIGHTS
-    layer = int(lights[i].maps.x);
     if (lights[i].maps.y > 1.0) { // six, +X -X +Y -Y +Z -Z
         vec3 q = p - lights[i].place.xyz, a = abs(q);
         int axis = a.x >= a.y && a.x >= a.z ? 0 : (a.y >= a.z ? 1 : 2);

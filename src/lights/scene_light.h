@@ -27,6 +27,8 @@ struct SceneLight {
     V3d position{0};        ///< of point and spot lights
     double inner_cone = 0;  ///< half angles of a spot, radians, 0 <= inner < outer <= pi / 2
     double outer_cone = 0;
+
+    bool operator==(const SceneLight&) const = default;
 };
 
 /// The lights of a cut.

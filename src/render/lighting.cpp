@@ -17,6 +17,10 @@ constexpr std::size_t kBatch = 256;
 // Memory of a batch's maps, unless they are smaller than that already.
 constexpr std::size_t kMapBytes = std::size_t{256} << 20;
 constexpr GLuint kMapUnit = 8;
+// What a light adds to a pixel in one sample, as a share of all light. A code of 8 bits on the
+// ground. A surface's outline has but some of a pixel's samples, and so needs more of the lights in
+// each.
+constexpr double kGroundStep = 1.0 / 256, kSurfaceStep = 1.0 / 1024;
 
 // As shaders/lights.glsl has them.
 struct LightRecord {
@@ -36,10 +40,10 @@ bool isLocal(const SceneLight& light) {
     return light.type != LightType::directional;
 }
 
-LightRecord recordOf(const SceneLight& light) {
+LightRecord recordOf(const SceneLight& light, double weight) {
     LightRecord record{};
     record.place = isLocal(light) ? floats(light.position, 1) : floats(light.direction, 0);
-    record.strength = floats(light.strength, 0);
+    record.strength = floats(light.strength * weight, 0);
     // The cone's factor is clamp(scale c + offset, 0, 1)^2; for a point light 1.
     record.axis = floats(V3d(0), 0);
     record.maps = {0, 0, 0, 1};
@@ -68,13 +72,21 @@ ViewRecord recordOf(const ShadowView& view, std::size_t light) {
     return record;
 }
 
+template <typename Record>
+void uploadRecords(const Buffer& buffer, const std::vector<Record>& records) {
+    if (records.empty()) return;
+    glNamedBufferSubData(buffer.id(), 0, static_cast<GLsizeiptr>(records.size() * sizeof(Record)),
+                         records.data());
+}
+
 } // namespace
 
-Lighting::Lighting(const Scene& scene, int map_size,
+Lighting::Lighting(const Scene& scene, int map_size, int samples,
                    const std::optional<std::filesystem::path>& shader_folder)
     : local_(std::ranges::any_of(scene.lights, isLocal)),
       maps_needed_(scene.object.mesh),
-      map_size_(map_size) {
+      map_size_(map_size),
+      samples_(samples) {
     if (maps_needed_) {
         index_count_ = static_cast<GLsizei>(scene.object.mesh->indices.size());
         draw_depth_ =
@@ -101,6 +113,11 @@ std::vector<std::string> Lighting::definitions() const {
 }
 
 void Lighting::place(const Scene& scene, const Turn& turn, const Similarity& similarity) {
+    const M33d probe_turn = turnMatrix(turn);
+    if (placed_ && probe_turn == probe_turn_ && similarity == similarity_) return;
+    placed_ = true;
+    probe_turn_ = probe_turn;
+    batches_.clear(); // their views are of another place
     turned_ = turnedLights(scene.lights, turn);
     similarity_ = similarity;
     caster_ = {similarity.shift, similarity.scale, {}};
@@ -112,7 +129,11 @@ void Lighting::place(const Scene& scene, const Turn& turn, const Similarity& sim
 }
 
 void Lighting::chooseLights(const Scene& scene, const V3d& eye) {
-    lights_ = lightsThatShow(scene, turned_, similarity_, eye, counts_);
+    std::vector<SceneLight> shown = lightsThatShow(scene, turned_, similarity_, eye, counts_);
+    if (!batches_.empty() && shown == lights_) return;
+    lights_ = std::move(shown);
+    const bool lit = shaderInfo(scene.material.shader).lit;
+    of_samples_ = spreadLights(lights_, samples_, lit ? kSurfaceStep : kGroundStep);
     ground_irradiance_ = V3d(0);
     for (const SceneLight& light : lights_) {
         if (!isLocal(light)) {
@@ -130,12 +151,14 @@ void Lighting::chooseLights(const Scene& scene, const V3d& eye) {
     in_use_ = -1;
 }
 
+std::size_t Lighting::mapsAtOnce(int map_size) {
+    const auto bytes = static_cast<std::size_t>(map_size) * map_size * sizeof(float);
+    return std::clamp(kMapBytes / bytes, std::size_t{1}, kBatch);
+}
+
 // A picture without lights has one batch, of none.
 void Lighting::makeBatches() {
-    const auto map_bytes = static_cast<std::size_t>(map_size_) * map_size_ * sizeof(float);
-    const std::size_t most_views = maps_needed_ && !local_
-                                       ? std::clamp(kMapBytes / map_bytes, std::size_t{1}, kBatch)
-                                       : kBatch;
+    const std::size_t most_views = maps_needed_ && !local_ ? mapsAtOnce(map_size_) : kBatch;
     batches_.clear();
     std::size_t light = 0;
     do {
@@ -158,7 +181,7 @@ void Lighting::makeBatches() {
 void Lighting::use(int index, const MeshBuffers* mesh) {
     const Batch& batch = batches_[static_cast<std::size_t>(index)];
     if (index != in_use_) {
-        uploadLights(batch);
+        uploadViews(batch);
         if (maps_needed_ && batch.views > 0) drawMaps(batch, *mesh);
     }
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, light_block_.id());
@@ -167,27 +190,34 @@ void Lighting::use(int index, const MeshBuffers* mesh) {
     in_use_ = index;
 }
 
-void Lighting::uploadLights(const Batch& batch) {
-    std::vector<LightRecord> lights;
+// Point and spot lights are in every sample, so that a view's light has the same place in the
+// sample as in the batch.
+void Lighting::uploadViews(const Batch& batch) {
     std::vector<ViewRecord> views;
     for (std::size_t i = batch.first_light; i < batch.first_light + batch.lights; ++i) {
-        lights.push_back(recordOf(lights_[i]));
+        for (std::size_t k = starts_[i]; k < starts_[i + 1]; ++k)
+            views.push_back(recordOf(views_[k], i - batch.first_light));
+    }
+    uploadRecords(view_block_, views);
+}
+
+bool Lighting::useSample(int sample) {
+    const Batch& batch = batches_[static_cast<std::size_t>(in_use_)];
+    std::vector<LightRecord> lights;
+    views_in_use_ = 0;
+    for (const auto& [i, weight] : of_samples_[static_cast<std::size_t>(sample)]) {
+        if (i < batch.first_light || i >= batch.first_light + batch.lights) continue;
+        lights.push_back(recordOf(lights_[i], weight));
         LightRecord& record = lights.back();
         const std::size_t count = starts_[i + 1] - starts_[i];
         record.maps[0] = static_cast<float>(starts_[i] - batch.first_view);
         record.maps[1] = static_cast<float>(count);
         record.maps[2] = static_cast<float>(views_[starts_[i]].texel);
-        for (std::size_t k = starts_[i]; k < starts_[i + 1]; ++k)
-            views.push_back(recordOf(views_[k], i - batch.first_light));
+        views_in_use_ += static_cast<int>(count);
     }
-    const auto upload = [](const Buffer& buffer, const auto& records) {
-        if (records.empty()) return;
-        glNamedBufferSubData(buffer.id(), 0,
-                             static_cast<GLsizeiptr>(records.size() * sizeof records[0]),
-                             records.data());
-    };
-    upload(light_block_, lights);
-    upload(view_block_, views);
+    lights_in_use_ = static_cast<int>(lights.size());
+    uploadRecords(light_block_, lights);
+    return !lights.empty();
 }
 
 void Lighting::drawMaps(const Batch& batch, const MeshBuffers& mesh) {
@@ -225,14 +255,13 @@ void Lighting::drawMaps(const Batch& batch, const MeshBuffers& mesh) {
     checkGl("drawing shadow maps");
 }
 
-void Lighting::setUniforms(const Program& program, int batch, const V2d& jitter) const {
+void Lighting::setUniforms(const Program& program, const V2d& jitter) const {
     // Not the pixel's own jitter, which moves the surface's points across the maps as well.
     setUniform(program, "texel_jitter", V2d(jitter.y, -jitter.x));
     setUniform(program, "caster_centre", caster_.centre);
     setUniform(program, "caster_radius", caster_.radius);
-    setUniform(program, "light_count",
-               static_cast<int>(batches_[static_cast<std::size_t>(batch)].lights));
-    setUniform(program, "first_batch", batch == 0 ? 1 : 0);
+    setUniform(program, "light_count", lights_in_use_);
+    setUniform(program, "first_batch", in_use_ == 0 ? 1 : 0);
 }
 
 } // namespace ibl

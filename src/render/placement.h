@@ -29,6 +29,7 @@ struct Similarity {
     V3d shift{0, 0, 0};
 
     V3d point(const V3d& p) const { return p * turn * scale + shift; }
+    bool operator==(const Similarity&) const = default;
 };
 
 /// Throws Error (usage) when the scale is not above 0 or anything is not finite.

@@ -19,7 +19,8 @@ struct FrameOptions {
     int samples = 16; ///< shaded samples a pixel; the picture is their mean (a box of one pixel)
     std::optional<std::filesystem::path> shader_folder; ///< replaces built-in shaders, file by file
     /// Texels a side of shadow maps; 0: the power of two that is at least 3/4 of the frame's
-    /// height, 256 to 2048.
+    /// height, 256 to 2048; where only a ground is lit, not so large that the maps of up to 256
+    /// lights take more than 256 MiB.
     int shadow_size = 0;
 };
 

@@ -110,11 +110,11 @@ void Renderer::State::drawFarSide(const CameraRays& rays, const V2d& jitter) con
     endFarSide(*far_side);
 }
 
-// Adds the batch's lights to the object's samples: a full-screen pass behind nothing but them.
-void Renderer::State::lightSurface(const CameraRays& rays, const V2i& tile, const V2d& jitter,
-                                   int batch) const {
+// Adds the sample's lights to the object's samples: a full-screen pass behind nothing but them.
+void Renderer::State::lightSurface(const CameraRays& rays, const V2i& tile,
+                                   const V2d& jitter) const {
     setView(under_lights, rays, tile, jitter);
-    lighting->setUniforms(under_lights, batch, jitter);
+    lighting->setUniforms(under_lights, jitter);
     for (GLuint i = 0; i < lit_points.size(); ++i)
         glBindTextureUnit(4 + i, lit_points[i].id());
     glDepthFunc(GL_GREATER);
@@ -126,14 +126,14 @@ void Renderer::State::lightSurface(const CameraRays& rays, const V2i& tile, cons
     glDepthFunc(GL_LEQUAL);
 }
 
-// What the batch's lights are kept from shining on the ground, light by light where its map lies.
-void Renderer::State::drawGroundShadow(const CameraRays& rays, const V2i& tile, const V2d& jitter,
-                                       int batch) const {
+// What the sample's lights are kept from shining on the ground, light by light where its map lies.
+void Renderer::State::drawGroundShadow(const CameraRays& rays, const V2i& tile,
+                                       const V2d& jitter) const {
     glBindFramebuffer(GL_FRAMEBUFFER, to_kept.id());
     const std::array<float, 4> nothing{};
     glClearBufferfv(GL_COLOR, 0, nothing.data());
     setView(ground_shadow, rays, tile, jitter);
-    lighting->setUniforms(ground_shadow, batch, jitter);
+    lighting->setUniforms(ground_shadow, jitter);
     setUniform(ground_shadow, "eye", rays.eye);
     // Whatever box is before the eye: depth is not used.
     const V3f ahead(rays.eye + rays.forward);
@@ -142,7 +142,7 @@ void Renderer::State::drawGroundShadow(const CameraRays& rays, const V2i& tile, 
     glEnable(GL_BLEND);
     glUseProgram(ground_shadow.id());
     glBindVertexArray(no_vertices.id());
-    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, lighting->viewCount(batch));
+    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, lighting->viewCount());
     glDisable(GL_BLEND);
     glDisable(GL_CLIP_DISTANCE0);
     glBindTextureUnit(9, kept.id());
@@ -155,7 +155,7 @@ void Renderer::State::drawSample(const CameraRays& rays, const V2i& tile, const 
                                  int batch) const {
     glViewport(-tile.x, -tile.y, options.width, options.height);
     if (far_side) drawFarSide(rays, jitter);
-    if (ground) drawGroundShadow(rays, tile, jitter, batch);
+    if (ground) drawGroundShadow(rays, tile, jitter);
     glBindFramebuffer(GL_FRAMEBUFFER, to_sample.id());
     if (!background || batch > 0) {
         const V3f color_behind = batch > 0 ? V3f(0) : clear_color;
@@ -172,11 +172,11 @@ void Renderer::State::drawSample(const CameraRays& rays, const V2i& tile, const 
     drawObject(surface, rays, tile, jitter);
     glColorMaski(0, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     glBindFramebuffer(GL_FRAMEBUFFER, to_sample.id());
-    if (lit) lightSurface(rays, tile, jitter, batch);
+    if (lit) lightSurface(rays, tile, jitter);
     if (background && (batch == 0 || ground)) {
         setView(background, rays, tile, jitter);
         setUniform(background, "tile_origin", tile);
-        if (ground) lighting->setUniforms(background, batch, jitter);
+        if (ground) lighting->setUniforms(background, jitter);
         drawFullscreen(background);
     }
     glDisable(GL_DEPTH_TEST);
@@ -186,12 +186,15 @@ void Renderer::State::drawSample(const CameraRays& rays, const V2i& tile, const 
 // there is but one.
 void Renderer::State::drawTile(const CameraRays& rays, const V2i& tile) {
     const int batches = lighting ? lighting->batchCount() : 1;
+    const std::vector<V2d> pattern = samplePattern(options.samples);
     bool first = true;
     for (int batch = 0; batch < batches; ++batch) {
         if (lighting) lighting->use(batch, mesh ? &*mesh : nullptr);
-        for (const V2d& point : samplePattern(options.samples)) {
+        for (std::size_t i = 0; i < pattern.size(); ++i) {
+            const bool any_light = lighting && lighting->useSample(static_cast<int>(i));
+            if (batch > 0 && !any_light) continue;
             glBindTextureUnit(0, probe.texture.id());
-            drawSample(rays, tile, point - V2d(0.5), batch);
+            drawSample(rays, tile, pattern[i] - V2d(0.5), batch);
             if (!accumulate) return;
             glBindFramebuffer(GL_FRAMEBUFFER, to_sum.id());
             glBindTextureUnit(0, sample.id());

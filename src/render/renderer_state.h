@@ -66,9 +66,8 @@ struct Renderer::State {
 
     V2i tileSize() const;
     void drawFullscreen(const Program& program) const;
-    void lightSurface(const CameraRays& rays, const V2i& tile, const V2d& jitter, int batch) const;
-    void drawGroundShadow(const CameraRays& rays, const V2i& tile, const V2d& jitter,
-                          int batch) const;
+    void lightSurface(const CameraRays& rays, const V2i& tile, const V2d& jitter) const;
+    void drawGroundShadow(const CameraRays& rays, const V2i& tile, const V2d& jitter) const;
     void drawSample(const CameraRays& rays, const V2i& tile, const V2d& jitter, int batch) const;
     void drawSphere(const Program& program, const CameraRays& rays, const V2i& tile) const;
     void drawObject(const Program& program, const CameraRays& rays, const V2i& tile,

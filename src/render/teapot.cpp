@@ -118,7 +118,10 @@ V3d normalAt(const Patch& patch, double s, double t) {
     return {0, 0, beside.along_j.cross(beside.along_i).z > 0 ? 1.0 : -1.0};
 }
 
-void addPatch(Mesh& mesh, const Patch& patch) {
+// Where the patch's rows lead in its picture: from its upper edge to the lower, or back up.
+enum class Rows { fall, rise };
+
+void addPatch(Mesh& mesh, const Patch& patch, Rows rows) {
     const auto first = static_cast<std::uint32_t>(mesh.positions.size());
     constexpr std::uint32_t side = kSegments + 1;
     for (std::uint32_t i = 0; i < side; ++i) {
@@ -127,7 +130,8 @@ void addPatch(Mesh& mesh, const Patch& patch) {
             const V3d p = evaluate(patch, s, t).position, n = normalAt(patch, s, t);
             mesh.positions.emplace_back(V3d(p.x, p.z, -p.y)); // Z up to Y up
             mesh.normals.emplace_back(V3d(n.x, n.z, -n.y));
-            mesh.texcoords.emplace_back(Imath::V2d(t, 1 - s)); // outside is along_j x along_i
+            // Outside is along_j x along_i, and right x up of a picture.
+            mesh.texcoords.emplace_back(rows == Rows::fall ? V2d(1 - t, s) : V2d(t, 1 - s));
         }
     }
     const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
@@ -161,11 +165,12 @@ Mesh makeTeapot() {
     Mesh mesh;
     for (const auto& profile : kProfiles) {
         for (int quarter = 0; quarter < 4; ++quarter)
-            addPatch(mesh, turnedPatch(profile, quarter));
+            addPatch(mesh, turnedPatch(profile, quarter), Rows::fall);
     }
-    for (const Patch& half : kHalves) {
-        addPatch(mesh, half);
-        addPatch(mesh, mirrored(half));
+    for (std::size_t i = 0; i < kHalves.size(); ++i) {
+        const Rows rows = i < 2 ? Rows::fall : Rows::rise; // the handle's, the spout's
+        addPatch(mesh, kHalves[i], rows);
+        addPatch(mesh, mirrored(kHalves[i]), rows);
     }
     fitUnitSphere(mesh);
     return mesh;

@@ -75,9 +75,16 @@ TEST_F(Cycles, Diffuse) {
     EXPECT_LT(errorOf("diffuse", {"--shader", "diffuse", "--samples", "16"}), 0.003);
 }
 
-// What the first face mirrors and what goes through both, all that enters leaving at once.
+// What the first face mirrors and what goes through both, all that enters leaving at once: Cycles'
+// Glossy of weight F and Refraction of weight 1 - F on the first face, Refraction alone on the
+// second.
 TEST_F(Cycles, GlassOfTwoFaces) {
     EXPECT_LT(errorOf("glass_faces", {"--shader", "glass", "--samples", "2048"}), 0.01);
+}
+
+// With Cycles' Glass on the second face, which mirrors inside and lets out later what it mirrored.
+TEST_F(Cycles, GlassThatMirrorsInsideIsAsFarOffAsTheManualSays) {
+    EXPECT_NEAR(errorOf("glass", {"--shader", "glass", "--samples", "512"}), 0.10, 0.02);
 }
 
 TEST_F(Cycles, SampledLobeConverges) {

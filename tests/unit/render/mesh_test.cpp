@@ -189,5 +189,50 @@ TEST(Mesh, TeapotIsOpenOnlyWhereNewellsIs) {
     EXPECT_GT(box.max.x, box.max.y); // spout towards +X, wider than high
 }
 
+/// How a picture lies on a triangle: what its right and its up become there.
+struct Lie {
+    V3d right, up, normal;
+    double area = 0;
+};
+Lie lieOf(const Mesh& mesh, std::size_t triangle) {
+    const std::uint32_t* t = mesh.indices.data() + triangle;
+    const V3d a(mesh.positions[t[0]]);
+    const V3d p = V3d(mesh.positions[t[1]]) - a, q = V3d(mesh.positions[t[2]]) - a;
+    const V2f uv_p = mesh.texcoords[t[1]] - mesh.texcoords[t[0]];
+    const V2f uv_q = mesh.texcoords[t[2]] - mesh.texcoords[t[0]];
+    const double d = double(uv_p.x) * uv_q.y - double(uv_p.y) * uv_q.x;
+    Lie lie{(p * uv_q.y - q * uv_p.y) / d, (p * uv_q.x - q * uv_p.x) / d, p.cross(q), 0};
+    lie.area = lie.normal.length() / 2;
+    lie.normal.normalize();
+    return lie;
+}
+
+TEST(Mesh, PicturesStandUprightAndAreNotMirrored) {
+    for (const std::string_view name : builtinObjectNames()) {
+        if (name == "sphere") continue;
+        const bool is_torus = name == "torus", is_teapot = name == "teapot";
+        const Mesh mesh = builtinMesh(name);
+        double steep = 0, upright = 0;
+        for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
+            const Lie lie = lieOf(mesh, i);
+            const V3f& p = mesh.positions[mesh.indices[i]];
+            ASSERT_GT(lie.right.cross(lie.up).dot(lie.normal), 0) << name << " " << i;
+            if (is_torus && std::abs(lie.normal.z) > 0.5) { // outwards on the front
+                ASSERT_GT((p.x * lie.up.x + p.y * lie.up.y) * lie.normal.z, 0);
+            } else if (is_teapot && p.x > 0.7) {
+                ASSERT_GT(lie.up.y, -0.1) << "spout";
+            } else if (!is_torus && !is_teapot && std::abs(lie.normal.y) > 0.99) {
+                ASSERT_LT(lie.up.z * lie.normal.y, 0) << name;
+            }
+            if (std::abs(lie.normal.y) > 0.95) continue;
+            steep += lie.area;
+            upright += lie.up.y > 0 ? lie.area : 0;
+        }
+        // The teapot's rim has an inner side, and its handle's upper part is level.
+        const double least = is_torus ? 0 : is_teapot ? 0.9 : 1;
+        EXPECT_GE(upright, least * steep) << name;
+    }
+}
+
 } // namespace
 } // namespace ibl
