@@ -20,7 +20,7 @@ constexpr double kPiece = 0.015;
 constexpr double kFar = 4;
 /// Gauss points to a piece of a texel's edge, and the piece's length over the distance of the
 /// nearest end of a pixel's edge.
-constexpr int kFlowPoints = 4;
+constexpr int kFlowPoints = 6;
 constexpr double kFlowPiece = 1.5;
 
 double squaredSineAtDistance(double r2) { // of half the angle whose tangent is r
