@@ -279,9 +279,12 @@ PrefilterResult inTwoParts(const Engine& engine, const PrefilterRequest& request
         parts.field = &field;
     }
     result.seconds_synthesis = watch.seconds();
+    // Beside a sun pixels' masses need one point more than footprintOf's, which are for lobes.
+    Footprint near_footprint = footprintOf(request.lobe, texel, kAnyDegree);
+    if (near_footprint.scale > 0) ++near_footprint.samples;
     const Image near =
         nearMap(engine.probe.panorama, makeNearField(split.near, probe.width, probe.height),
-                request, footprintOf(request.lobe, texel, kAnyDegree), threads);
+                request, near_footprint, threads);
     parts.near = &near;
     MapNorm norm;
     fillMap(engine.probe, request, footprintOf(request.lobe, texel, split.degree), parts, threads,
