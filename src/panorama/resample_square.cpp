@@ -18,8 +18,6 @@ namespace {
 /// Cells' edges and middles bend by no more than this many source pixels, so that the two halves of
 /// an edge bend by no more than a quarter of it...
 constexpr double kBend = 0.01;
-/// An edge's chords: they bend by kBend / kChords^2 and less.
-constexpr int kChords = 8;
 /// ...unless a cell has less than this part of a source pixel's solid angle: then the source is
 /// read at its middle.
 constexpr double kSmallest = 1.0 / 4096;
@@ -165,22 +163,8 @@ private:
         return near(centre, (around[0] + around[2] + around[4] + around[6]) * 0.25);
     }
 
-    /// The parabolas through an edge's ends and its middle, in chords.
-    static std::vector<V2d> outlineOf(const std::array<V2d, 8>& around) {
-        std::vector<V2d> outline;
-        for (std::size_t i = 0; i < 8; i += 2) {
-            const V2d &from = around[i], &middle = around[i + 1], &to = around[(i + 2) % 8];
-            for (int k = 0; k < kChords; ++k) {
-                const double t = static_cast<double>(k) / kChords;
-                outline.push_back(from * ((1 - t) * (1 - 2 * t)) + middle * (4 * t * (1 - t)) +
-                                  to * (t * (2 * t - 1)));
-            }
-        }
-        return outline;
-    }
-
     void readCell(const std::array<V2d, 8>& around) {
-        const std::vector<V2d> cell = outlineOf(around);
+        const std::vector<V2d> cell(around.begin(), around.end());
         double left = cell[0].x, right = left, top = cell[0].y, bottom = top;
         for (const V2d& p : cell) {
             left = std::min(left, p.x);
