@@ -12,7 +12,7 @@
 //
 //     B(d, s) = int_0^s Phi(r) ds'
 //
-// is what flows between half-planes: see soft_texels.h. Both vary over the lobe's width near the
+// is what flows between half-planes: see near_weights.h. Both vary over the lobe's width near the
 // point and in proportion to the distance farther out, so the table's nodes are evenly spaced in
 // log(1 + d / width) and log(1 + s / width).
 #pragma once

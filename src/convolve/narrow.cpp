@@ -35,10 +35,10 @@ NearKernel::NearKernel(const Lobe& lobe, double u, double negligible)
 }
 
 double NearKernel::value(double h) const {
-    const double whole = norm_ * lobeValue(lobe_, 1 - 2 * h);
-    if (u_ == 0) return whole;
-    const double a2 = alphaSquared(lobe_), uq = u_ * (a2 + (1 - a2) * h);
-    return whole * std::exp(-uq) * (1 + uq);
+    if (u_ == 0) return norm_ * lobeValue(lobe_, 1 - 2 * h);
+    // From the cosine q would not be known: it is 1e-16 on the axis of roughness 1e-4.
+    const double a2 = alphaSquared(lobe_), q = a2 + (1 - a2) * h, uq = u_ * q;
+    return norm_ * a2 / (kPi * q * q) * (1 - 2 * h) * std::exp(-uq) * (1 + uq);
 }
 
 // With beta = 1 - alpha^2, 2 pi sin t dt = 4 pi dh and cos t = 1 - 2h = (1 + 2 alpha^2 / beta) -
@@ -59,6 +59,16 @@ double NearKernel::massBeyond(double h) const {
 }
 
 std::vector<double> farCoefficients(std::vector<double> k, const NearKernel& near) {
+    const auto subtract = [&](double weight, double x) { // weight * P_l(x)
+        double previous = 0, current = 1;
+        for (std::size_t l = 0; l < k.size(); ++l) {
+            k[l] -= weight * current;
+            const double n = static_cast<double>(l);
+            const double next = ((2 * n + 1) * x * current - n * previous) / (n + 1);
+            previous = current;
+            current = next;
+        }
+    };
     // By parts: k_l = 2 pi int K P_l sin t dt over panels that grow with the distance.
     const GaussRule& rule = gaussRule(16);
     const double longest = 8.0 / static_cast<double>(k.size());
@@ -67,20 +77,14 @@ std::vector<double> farCoefficients(std::vector<double> k, const NearKernel& nea
         const double to = std::min(near.reach, from + std::min(longest, from + 2 * near.width));
         for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
             const double t = 0.5 * (from + to) + 0.5 * (to - from) * rule.nodes[i];
-            const double weight = 0.5 * (to - from) * rule.weights[i] * 2 * kPi * std::sin(t) *
-                                  near.value(squaredSine(t));
-            const double x = std::cos(t);
-            double previous = 0, current = 1;
-            for (std::size_t l = 0; l < k.size(); ++l) {
-                k[l] -= weight * current;
-                const double n = static_cast<double>(l);
-                const double next = ((2 * n + 1) * x * current - n * previous) / (n + 1);
-                previous = current;
-                current = next;
-            }
+            subtract(0.5 * (to - from) * rule.weights[i] * 2 * kPi * std::sin(t) *
+                         near.value(squaredSine(t)),
+                     std::cos(t));
         }
         from = to;
     }
+    // What lies beyond the reach counts as lying on it (EdgeTable): a ring.
+    subtract(near.massBeyond(squaredSine(near.reach)), std::cos(near.reach));
     k[0] = 1 - near.mass;
     return k;
 }

@@ -13,7 +13,7 @@
 // and the others K_far = K (1 - w) = K (u q)^2 / 2 + ..., in which q^-2 cancels: an entire function
 // that is smooth over sqrt(2 / u) radians, has the lesser part of the lobe's mass, and needs a band
 // limit of a few times sqrt(u / 2), whatever the roughness. Both parts are positive. K_near ends
-// after a few times sqrt(2 / u) and is convolved in space (soft_texels.h), in closed form at the
+// after a few times sqrt(2 / u) and is convolved in space (near_weights.h), in closed form at the
 // pixels' and texels' edges. Phong's and Blinn-Phong's lobes have no tail: all of them is near.
 //
 // A constant in place of what lies beyond the band limit, or a few displaced texels, is simpler and
