@@ -90,10 +90,9 @@ void requireNumbers(const std::string& path, std::istream& file) {
         const auto count = countNumbers(line.data() + space, line.data() + line.size());
         if (!count || *count < (kind == "vt" ? 1 : 3)) {
             throw inputError(
-                path + ":" + std::to_string(number),
-                std::string(kind) +
-                    (count ? " has too few numbers" : " has a word that is no number") +
-                    "; export it again");
+                path, "line " + std::to_string(number) + ": " + std::string(kind) +
+                          (count ? " has too few numbers" : " has a word that is no number") +
+                          "; export it again");
         }
     }
     file.clear();
