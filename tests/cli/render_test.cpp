@@ -225,7 +225,7 @@ TEST(Render, BackgroundColourAndImage) {
     expectRefused(runTool({"render", "--probe", "builtin:furnace", "--background", "o.exr",
                            "--size", "17x16", "-o", "q.exr"},
                           scratch.path()),
-                  1, "size");
+                  2, "the picture of 17x16");
 }
 
 TEST(Render, ObjFilesAreDrawn) {

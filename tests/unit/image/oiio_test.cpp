@@ -92,7 +92,7 @@ TEST_F(Oiio, RefusesUnknownFormats) {
     writeBytes(path("a.txt"), "This is no image, but a text that is longer than any magic number.");
     EXPECT_TRUE(contains(errorOf(ExitCode::input, [&] { readImage(path("a.txt")); }), "format"));
     for (const char* name : {"a.foo", "a.term", "a.null"}) {
-        errorOf(ExitCode::output, [&] { writeOne(path(name), testPixels(2, 2)); });
+        errorOf(ExitCode::usage, [&] { writeOne(path(name), testPixels(2, 2)); });
     }
     // Without an extension there is no format at all.
     errorOf(ExitCode::usage, [&] { writeOne(path("a"), testPixels(2, 2)); });

@@ -85,7 +85,7 @@ TEST_F(Outputs, RefusesWhatCannotBeWritten) {
     EXPECT_TRUE(contains(refusal(path("b/")), "is a folder"));
     EXPECT_TRUE(contains(refusal(path("no/b")), "no folder"));
     writeBytes(path("file"), "");
-    EXPECT_TRUE(contains(refusal(path("file/b")), "no folder"));
+    EXPECT_TRUE(contains(refusal(path("file/b")), "is a file, not a folder"));
     EXPECT_TRUE(contains(refusal(path(std::string(300, 'n'))), "too long"));
     EXPECT_TRUE(contains(refusal(""), "empty"));
     EXPECT_TRUE(contains(refusal("/dev/full"), "full"));
@@ -96,7 +96,7 @@ TEST_F(Outputs, RefusesWhatCannotBeWritten) {
 
 TEST_F(Outputs, RefusesOneFileTwiceUnderAnyName) {
     fs::create_symlink("a", path("link"));
-    const std::string message = errorOf(ExitCode::output, [&] {
+    const std::string message = errorOf(ExitCode::usage, [&] {
         OutputSet outputs;
         outputs.add(path("a"));
         outputs.add(path("./link"));
