@@ -15,7 +15,7 @@ vec3 brdf(vec3 n, vec3 l, vec3 v) {
     float lobe = sqrt((exponent_u + 1.0) * (exponent_v + 1.0)) / (8.0 * pi) * pow(hn, power) /
                  (hl * max(max(nl, nv), 1e-4));
     vec3 gloss = (f0 + (1.0 - f0) * pow(1.0 - hl, 5.0)) * lobe;
-    vec3 matte = 28.0 / (23.0 * pi) * base_color * (1.0 - f0) * (1.0 - pow(1.0 - 0.5 * nl, 5.0)) *
+    vec3 matte = 28.0 / (23.0 * pi) * albedo * (1.0 - f0) * (1.0 - pow(1.0 - 0.5 * nl, 5.0)) *
                  (1.0 - pow(1.0 - 0.5 * nv, 5.0));
     return matte + gloss;
 }

@@ -10,5 +10,5 @@ vec3 brdf(vec3 n, vec3 l, vec3 v) {
     float c = max(dot(n, normalize(l + v)), 0.0);
     float norm = (exponent + 2.0) * (exponent + 4.0) / (8.0 * pi * (exp2(-0.5 * exponent) + exponent));
     vec3 gloss = specular_color * (norm * pow(c, exponent));
-    return mix(base_color / pi, gloss, reflectivity);
+    return mix(albedo / pi, gloss, reflectivity);
 }

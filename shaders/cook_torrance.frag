@@ -22,5 +22,5 @@ vec3 brdf(vec3 n, vec3 l, vec3 v) {
     float distribution = exp((c2 - 1.0) / (c2 * m2)) / (pi * m2 * c2 * c2);
     float shadowing = min(1.0, 2.0 * nh * min(nl, nv) / vh);
     vec3 gloss = fresnelOfDielectric(vh) * (distribution * shadowing / (4.0 * nl * nv));
-    return mix(base_color / pi, gloss, reflectivity);
+    return mix(albedo / pi, gloss, reflectivity);
 }

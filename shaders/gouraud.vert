@@ -15,9 +15,11 @@ void main() {
     vec3 facing = normalize(mat3(world_from_object) * normal);
     vec3 incident = normalize(surface_point - eye);
     surface_outside = true;
-    outer_color = shade(facing, incident) + surface_emission;
+    outer_color = shade(facing, incident);
     surface_outside = false;
-    inner_color = shade(-facing, incident) + surface_emission;
+    inner_color = shade(-facing, incident);
+    outer_color += surface_emission;
+    inner_color += surface_emission;
     vertex_alpha = surface_alpha;
     gl_Position = clip_from_object * vec4(position, 1.0);
 }

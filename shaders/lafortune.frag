@@ -15,5 +15,5 @@ vec3 brdf(vec3 n, vec3 l, vec3 v) {
     float c = lobe_x * dot(l, along_u) * dot(v, along_u) + lobe_y * dot(l, along_v) * dot(v, along_v) +
               lobe_z * dot(l, n) * dot(v, n);
     vec3 gloss = specular_color * ((exponent + 2.0) / (2.0 * pi) * pow(max(c, 0.0), exponent));
-    return mix(base_color / pi, gloss, reflectivity);
+    return mix(albedo / pi, gloss, reflectivity);
 }

@@ -1,7 +1,7 @@
 // What of the lights of shaders/light_blocks.glsl reaches a point.
 layout(binding = 8) uniform sampler2DArray shadow_maps;
 uniform int light_count;
-vec3 base_color; // of the point that is lit
+vec3 albedo; // of the point that is lit
 uniform vec2 texel_jitter; // of the sample, -0.5 to 0.5
 uniform bool first_batch; // light that is not of the lights belongs to the first batch
 

@@ -8,5 +8,5 @@ vec3 brdf(vec3 n, vec3 l, vec3 v) {
     float a = 1.0 - 0.5 * square / (square + 0.33), b = 0.45 * square / (square + 0.09);
     float nl = dot(n, l), nv = max(dot(n, v), 0.0);
     float s = max(dot(l, v) - nl * nv, 0.0);
-    return base_color / 3.14159265358979 * (a + b * s / max(nl, nv));
+    return albedo / 3.14159265358979 * (a + b * s / max(nl, nv));
 }

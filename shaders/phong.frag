@@ -9,5 +9,5 @@ vec3 brdf(vec3 n, vec3 l, vec3 v) {
     const float pi = 3.14159265358979;
     float c = max(dot(reflect(-l, n), v), 0.0);
     vec3 gloss = specular_color * ((exponent + 2.0) / (2.0 * pi) * pow(c, exponent));
-    return mix(base_color / pi, gloss, reflectivity);
+    return mix(albedo / pi, gloss, reflectivity);
 }

@@ -15,5 +15,5 @@ vec3 brdf(vec3 n, vec3 l, vec3 v) {
     vec3 fresnel = f0 + (1.0 - f0) * pow(1.0 - clamp(dot(l, h), 0.0, 1.0), 5.0);
     float k = sqrt(2.0 * r / pi);
     float facets = r / (t * t) / ((k + (1.0 - k) * nl) * (k + (1.0 - k) * nv));
-    return (1.0 - fresnel) * base_color / pi + fresnel * (facets / (4.0 * pi));
+    return (1.0 - fresnel) * albedo / pi + fresnel * (facets / (4.0 * pi));
 }

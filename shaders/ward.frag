@@ -13,5 +13,5 @@ vec3 brdf(vec3 n, vec3 l, vec3 v) {
     float hn = max(dot(h, n), 1e-3);
     vec2 tilt = vec2(dot(h, along_u) / alpha_u, dot(h, along_v) / alpha_v) / hn;
     float lobe = dot(h, h) / (pi * alpha_u * alpha_v * hn * hn * hn * hn) * exp(-dot(tilt, tilt));
-    return mix(base_color / pi, specular_color * lobe, reflectivity);
+    return mix(albedo / pi, specular_color * lobe, reflectivity);
 }

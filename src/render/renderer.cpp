@@ -67,6 +67,7 @@ void Renderer::State::uploadScene(const Scene& scene) {
     surfaces = uploadSurfaces(scene.object);
     if (scene.object.mesh) mesh = uploadMesh(*scene.object.mesh);
     lit = !scene.material.own && shaderInfo(scene.material.shader).lit;
+    lit_at_points = lit && scene.interpolation != Interpolation::gouraud;
     ground = scene.ground;
     if (!lit && !ground) return;
     if (scene.lights.empty()) throw usage("nothing lights the picture; give lights");
@@ -142,10 +143,12 @@ void Renderer::State::makePrograms(const Scene& scene) {
                            options.shader_folder);
     };
     makeSurface(scene);
-    if (lit) {
-        const std::string_view file = shaderInfo(scene.material.shader).file;
-        under_lights = program(
-            {"view.glsl", "light_blocks.glsl", "lights.glsl", "tangent.glsl", file, "lit.frag"});
+    if (lit_at_points) {
+        std::vector<std::string_view> files{"view.glsl"};
+        for (const std::string_view file : litFiles(scene.material.shader))
+            files.push_back(file);
+        files.push_back("lit.frag");
+        under_lights = program(std::move(files));
     }
     makeBackground(scene);
     if (ground) makeGround();
@@ -204,8 +207,9 @@ void Renderer::State::place(const Turn& turn, const Placement& placement) {
     }
     if (lit) {
         const M33d& t = similarity.turn;
-        setUniform(under_lights, "object_right", V3d(t[0][0], t[0][1], t[0][2]));
-        setUniform(under_lights, "object_up", V3d(t[1][0], t[1][1], t[1][2]));
+        const Program& program = lit_at_points ? under_lights : surface;
+        setUniform(program, "object_right", V3d(t[0][0], t[0][1], t[0][2]));
+        setUniform(program, "object_up", V3d(t[1][0], t[1][1], t[1][2]));
     }
     const M33d probe_from_world = turnMatrix(turn).transposed();
     setUniform(surface, "probe_from_world", probe_from_world);
@@ -232,7 +236,7 @@ void Renderer::State::makeTargets() {
         sum = makeTexture(GL_TEXTURE_2D, GL_RGBA32F, size.x, size.y);
         to_sum = makeFramebuffer(sum);
     }
-    if (lit) makePointTargets(size);
+    if (lit_at_points) makePointTargets(size);
     if (ground) {
         kept = makeTexture(GL_TEXTURE_2D, GL_RGBA32F, size.x, size.y);
         to_kept = makeFramebuffer(kept);
@@ -267,11 +271,6 @@ Renderer::Renderer(const EglContext&, const Scene& scene, const FrameOptions& op
     }
     if (scene.interpolation != Interpolation::phong && !scene.object.mesh) {
         throw usage("the sphere has no triangles to interpolate over; take another object");
-    }
-    if (scene.interpolation == Interpolation::gouraud && !scene.material.own &&
-        shaderInfo(scene.material.shader).lit) {
-        throw usage("lights are summed in every pixel, not at vertices; take another "
-                    "interpolation or shader");
     }
     if (options.samples < 1) throw usage("there is no picture of no samples; give at least one");
     state_->options = options;

@@ -166,13 +166,16 @@ void Renderer::State::drawSample(const CameraRays& rays, const V2i& tile, const 
     const float far_depth = 1;
     glClearBufferfv(GL_DEPTH, 0, &far_depth);
     glEnable(GL_DEPTH_TEST);
-    if (lit) glBindFramebuffer(GL_FRAMEBUFFER, to_points.id());
-    glColorMaski(0, batch == 0, batch == 0, batch == 0, batch == 0);
+    if (lit_at_points) glBindFramebuffer(GL_FRAMEBUFFER, to_points.id());
+    const bool at_vertices = lit && !lit_at_points;
+    if (at_vertices) lighting->setUniforms(surface, jitter);
+    const GLboolean rgb = batch == 0 || at_vertices, alpha = batch == 0;
+    glColorMaski(0, rgb, rgb, rgb, alpha);
     setView(surface, rays, tile, jitter);
     drawObject(surface, rays, tile, jitter);
     glColorMaski(0, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     glBindFramebuffer(GL_FRAMEBUFFER, to_sample.id());
-    if (lit) lightSurface(rays, tile, jitter);
+    if (lit_at_points) lightSurface(rays, tile, jitter);
     if (background && (batch == 0 || ground)) {
         setView(background, rays, tile, jitter);
         setUniform(background, "tile_origin", tile);

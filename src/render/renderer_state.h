@@ -37,7 +37,8 @@ struct Renderer::State {
     VertexArray no_vertices;
     std::optional<Lighting> lighting;
     std::optional<Ground> ground;
-    bool lit = false;
+    bool lit = false;                   ///< the material is
+    bool lit_at_points = false;         ///< in a pass of its own (`under_lights`), not at vertices
     const Scene* light_scene = nullptr; ///< of which `lighting` chooses lights
 
     Program surface, under_lights, ground_shadow, background, accumulate, resolve;

@@ -17,7 +17,7 @@ std::vector<std::string> kindDefinitions(const SurfaceKind& kind) {
 }
 
 /// The files up to that which defines shade().
-std::vector<std::string_view> shadingFiles(const Material& material) {
+std::vector<std::string_view> shadingFiles(const Material& material, Interpolation interpolation) {
     const MapNeeds needs = mapNeeds(material);
     std::vector<std::string_view> files{"lookup.glsl", "maps.glsl", "surface.glsl"};
     if (hasParameter(material, Parameter::fresnel)) files.push_back("fresnel.glsl");
@@ -32,7 +32,13 @@ std::vector<std::string_view> shadingFiles(const Material& material) {
         files.push_back(material.own->name);
     } else {
         const ShaderInfo& info = shaderInfo(material.shader);
-        files.push_back(info.lit ? "lit_points.glsl" : info.file);
+        if (info.lit && interpolation == Interpolation::gouraud) {
+            const auto lit = litFiles(material.shader);
+            files.insert(files.end(), lit.begin(), lit.end());
+            files.push_back("lit_vertices.glsl");
+        } else {
+            files.push_back(info.lit ? "lit_points.glsl" : info.file);
+        }
     }
     return files;
 }
@@ -64,6 +70,11 @@ ProgramParts around(std::vector<std::string_view> shading, const SurfaceKind& ki
 }
 
 } // namespace
+
+std::vector<std::string_view> litFiles(Shader shader) {
+    return {"light_blocks.glsl", "lights.glsl", "tangent.glsl", shaderInfo(shader).file,
+            "lit_radiance.glsl"};
+}
 
 MapNeeds mapNeeds(const Material& material) {
     MapNeeds needs;
@@ -102,7 +113,8 @@ ProgramParts surfaceParts(const Material& material, const SurfaceKind& kind,
     definitions.push_back(std::string("MULTISCATTER ") + truth(method.multiscatter));
     definitions.push_back(std::string("SEPARABLE_MASKING ") +
                           truth(method.masking == Masking::separable));
-    return around(shadingFiles(material), kind, std::move(definitions), material.own);
+    return around(shadingFiles(material, kind.interpolation), kind, std::move(definitions),
+                  material.own);
 }
 
 ProgramParts aovParts(const SurfaceKind& kind, std::vector<std::string> definitions) {

@@ -15,6 +15,8 @@ struct SurfaceKind {
 /// What draws the object; `definitions` are those of its maps and textures.
 ProgramParts surfaceParts(const Material& material, const SurfaceKind& kind,
                           std::vector<std::string> definitions);
+/// The files that define litRadiance() of a lit shader.
+std::vector<std::string_view> litFiles(Shader shader);
 /// What draws normals, depth and parts.
 ProgramParts aovParts(const SurfaceKind& kind, std::vector<std::string> definitions);
 /// What draws the far side of a mesh for refraction.

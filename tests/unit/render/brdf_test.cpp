@@ -205,6 +205,7 @@ std::vector<V3d> byShader(Passes& passes, const Material& material,
                              "layout(binding = 2) uniform sampler2D v_map;\n"
                              "out vec4 color;\n"
                              "uniform vec3 base_color;\n"
+                             "#define albedo base_color\n"
                              "vec3 brdf(vec3 n, vec3 l, vec3 v);\n"
                              "void main() {\n"
                              "    ivec2 p = ivec2(gl_FragCoord.xy);\n"

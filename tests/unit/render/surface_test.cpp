@@ -88,6 +88,49 @@ TEST(Interpolation, OfNormalsColoursOrNothing) {
     EXPECT_GT(compared, 100);
 }
 
+// More lights than a batch holds, and what belongs to the first of them only.
+TEST(Interpolation, OfColoursUnderLightsIsTheSumAtVertices) {
+    const Mesh mesh = leaningTriangle();
+    Scene scene;
+    scene.object.mesh = mesh;
+    Part part{0, mesh.indices.size(), {}};
+    part.surface.emissive = V3f(0.125F, 0, 0);
+    scene.object.parts = {part};
+    scene.material = Material(Shader::lambert);
+    scene.material[Parameter::ambient] = V3d(0, 0.25, 0);
+    scene.interpolation = Interpolation::gouraud;
+    scene.background = NoBackground{};
+    for (int i = 0; i < 300; ++i) {
+        const double turn = 0.1 * i;
+        scene.lights.push_back({LightType::directional,
+                                V3d(0.4 * std::cos(turn), 0.4 * std::sin(turn), 1).normalized(),
+                                V3d(0.01, 0.002 * (i % 7), i < 256 ? 0.01 : 0.05), V3d(0), 0, 0});
+    }
+    std::array<V3d, 3> colors;
+    for (std::size_t k = 0; k < 3; ++k) {
+        colors[k] = V3d(0.125, 0.25, 0);
+        for (const SceneLight& light : scene.lights) {
+            const double cosine = std::max(V3d(mesh.normals[k]).dot(light.direction), 0.0);
+            colors[k] += light.strength * (cosine / kPi);
+        }
+    }
+    const Image drawn = Renderer(softwareContext(), scene, {48, 48, 1, {}}).render(kFront);
+    int compared = 0;
+    for (int y = 0; y < 48; ++y) {
+        for (int x = 0; x < 48; ++x) {
+            const Hit hit = hitAt(x, y, 48);
+            if (!hit.inside) continue;
+            V3d expected(0);
+            for (std::size_t k = 0; k < 3; ++k)
+                expected += colors[k] * hit.weight[k];
+            EXPECT_LT((pixel(drawn, x, y) - expected).length(), 1e-5) << x << " " << y;
+            EXPECT_EQ(drawn.at(x, y)[3], 1);
+            ++compared;
+        }
+    }
+    EXPECT_GT(compared, 100);
+}
+
 TEST(Interpolation, BothSidesTurnTheirNormalsToTheEye) {
     for (const Interpolation interpolation :
          {Interpolation::phong, Interpolation::gouraud, Interpolation::flat}) {
