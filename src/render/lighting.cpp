@@ -81,16 +81,20 @@ void uploadRecords(const Buffer& buffer, const std::vector<Record>& records) {
 
 } // namespace
 
-Lighting::Lighting(const Scene& scene, int map_size, int samples,
-                   const std::optional<std::filesystem::path>& shader_folder)
+Lighting::Lighting(const Scene& scene, const std::vector<std::string>& surfaces, int map_size,
+                   int samples, const std::optional<std::filesystem::path>& shader_folder)
     : local_(std::ranges::any_of(scene.lights, isLocal)),
       maps_needed_(scene.object.mesh),
       map_size_(map_size),
       samples_(samples) {
     if (maps_needed_) {
-        index_count_ = static_cast<GLsizei>(scene.object.mesh->indices.size());
+        const bool cut_outs = std::ranges::any_of(
+            scene.object.parts, [](const Part& part) { return part.surface.alpha_cutoff > 0; });
+        std::vector<std::string> definitions = surfaces;
+        definitions.push_back("CUT_OUTS " + std::to_string(cut_outs ? 1 : 0));
         draw_depth_ =
-            makeProgram({{"shadow_map.vert"}, {"shadow_map.frag"}, {}, {}}, shader_folder);
+            makeProgram({{"shadow_map.vert"}, {"surface.glsl", "shadow_map.frag"}, definitions, {}},
+                        shader_folder);
         GLuint id = 0;
         glCreateFramebuffers(1, &id);
         to_layer_ = Framebuffer(id);
@@ -178,11 +182,11 @@ void Lighting::makeBatches() {
     }
 }
 
-void Lighting::use(int index, const MeshBuffers* mesh) {
+void Lighting::use(int index, const DrawCaster& draw) {
     const Batch& batch = batches_[static_cast<std::size_t>(index)];
     if (index != in_use_) {
         uploadViews(batch);
-        if (maps_needed_ && batch.views > 0) drawMaps(batch, *mesh);
+        if (maps_needed_ && batch.views > 0) drawMaps(batch, draw);
     }
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, light_block_.id());
     glBindBufferBase(GL_UNIFORM_BUFFER, 1, view_block_.id());
@@ -220,7 +224,7 @@ bool Lighting::useSample(int sample) {
     return !lights.empty();
 }
 
-void Lighting::drawMaps(const Batch& batch, const MeshBuffers& mesh) {
+void Lighting::drawMaps(const Batch& batch, const DrawCaster& draw) {
     const auto wanted = static_cast<GLsizei>(batch.views);
     if (layers_ < wanted) {
         GLuint id = 0;
@@ -238,8 +242,6 @@ void Lighting::drawMaps(const Batch& batch, const MeshBuffers& mesh) {
     }
     glBindFramebuffer(GL_FRAMEBUFFER, to_layer_.id());
     glViewport(0, 0, map_size_, map_size_);
-    glUseProgram(draw_depth_.id());
-    glBindVertexArray(mesh.array.id());
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LESS);
     for (GLint layer = 0; layer < wanted; ++layer) {
@@ -248,7 +250,7 @@ void Lighting::drawMaps(const Batch& batch, const MeshBuffers& mesh) {
         glClearBufferfv(GL_DEPTH, 0, &farthest);
         const ShadowView& view = views_[batch.first_view + static_cast<std::size_t>(layer)];
         setUniform(draw_depth_, "clip_from_object", matrixOf(similarity_) * view.clip_from_world);
-        glDrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
+        draw(draw_depth_);
     }
     glDisable(GL_DEPTH_TEST);
     glDepthFunc(GL_LEQUAL);

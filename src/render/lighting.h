@@ -3,16 +3,19 @@
 
 #include "render/gl_objects.h"
 #include "render/light_samples.h"
-#include "render/mesh_buffers.h"
 #include "render/scene.h"
 #include "render/shadow_views.h"
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace ibl {
+
+/// Draws the object, in its own space, by a program that has all but the parts' uniforms.
+using DrawCaster = std::function<void(const Program&)>;
 
 /// Lights are drawn in batches of as many as the shaders' uniform blocks hold; light adds up, so
 /// that a picture is the sum of its batches' pictures. A batch's maps are one texture array, made
@@ -24,10 +27,11 @@ public:
     /// How many maps of that size a batch has at the most.
     static std::size_t mapsAtOnce(int map_size);
 
-    /// The scene's object casts the shadows; the exact sphere needs no maps.
+    /// The scene's object casts the shadows; the exact sphere needs no maps. `surfaces` are the
+    /// definitions of the textures of its parts.
     /// Throws Error (input) where point or spot lights are among more lights than one batch holds.
-    Lighting(const Scene& scene, int map_size, int samples,
-             const std::optional<std::filesystem::path>& shader_folder);
+    Lighting(const Scene& scene, const std::vector<std::string>& surfaces, int map_size,
+             int samples, const std::optional<std::filesystem::path>& shader_folder);
 
     /// For every program that includes shaders/lights.glsl.
     std::vector<std::string> definitions() const;
@@ -41,9 +45,9 @@ public:
     /// Of the chosen lights: the irradiance of the ground without the object, of directional ones.
     const V3d& groundIrradiance() const { return ground_irradiance_; }
 
-    /// Makes the batch the one that programs see; draws its maps where they are not there. Leaves
-    /// the frame buffer's binding and the viewport changed.
-    void use(int batch, const MeshBuffers* mesh);
+    /// Makes the batch the one that programs see; has `draw` draw the object into its maps where
+    /// they are not there. Leaves the frame buffer's binding and the viewport changed.
+    void use(int batch, const DrawCaster& draw);
     /// Brings the lights of one of a pixel's samples into the batch that is in use. False where it
     /// has none.
     bool useSample(int sample);
@@ -61,7 +65,7 @@ private:
 
     void makeBatches();
     void uploadViews(const Batch& batch);
-    void drawMaps(const Batch& batch, const MeshBuffers& mesh);
+    void drawMaps(const Batch& batch, const DrawCaster& draw);
 
     bool local_ = false; ///< point or spot lights are among them
     bool placed_ = false;
@@ -69,7 +73,6 @@ private:
     std::vector<SceneLight> turned_;
     Similarity similarity_;
     std::vector<V3f> points_; ///< of the mesh, in the world
-    GLsizei index_count_ = 0;
     Caster caster_;
     bool maps_needed_; ///< the exact sphere has views, but no maps
     int map_size_;

@@ -72,8 +72,8 @@ void Renderer::State::uploadScene(const Scene& scene) {
     if (!lit && !ground) return;
     if (scene.lights.empty()) throw usage("nothing lights the picture; give lights");
     light_scene = &scene;
-    lighting.emplace(scene, shadowSize(options, lit, scene.lights.size()), options.samples,
-                     options.shader_folder);
+    lighting.emplace(scene, surfaces.definitions, shadowSize(options, lit, scene.lights.size()),
+                     options.samples, options.shader_folder);
 }
 
 void Renderer::State::uploadLobe(const Scene& scene) {

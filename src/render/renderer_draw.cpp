@@ -78,6 +78,10 @@ void Renderer::State::drawMesh(const Program& program, const CameraRays& rays,
     setUniform(program, "clip_from_world", *clip_from_world);
     setUniform(program, "clip_from_object", world_from_object * *clip_from_world);
     setUniform(program, "world_from_object", world_from_object);
+    drawParts(program);
+}
+
+void Renderer::State::drawParts(const Program& program) const {
     glUseProgram(program.id());
     glBindVertexArray(mesh->array.id());
     for (const Part& part : parts) {
@@ -192,7 +196,7 @@ void Renderer::State::drawTile(const CameraRays& rays, const V2i& tile) {
     const std::vector<V2d> pattern = samplePattern(options.samples);
     bool first = true;
     for (int batch = 0; batch < batches; ++batch) {
-        if (lighting) lighting->use(batch, mesh ? &*mesh : nullptr);
+        if (lighting) lighting->use(batch, [this](const Program& p) { drawParts(p); });
         for (std::size_t i = 0; i < pattern.size(); ++i) {
             const bool any_light = lighting && lighting->useSample(static_cast<int>(i));
             if (batch > 0 && !any_light) continue;

@@ -74,6 +74,7 @@ struct Renderer::State {
     void drawObject(const Program& program, const CameraRays& rays, const V2i& tile,
                     const V2d& jitter) const;
     void drawMesh(const Program& program, const CameraRays& rays, const V2d& jitter) const;
+    void drawParts(const Program& program) const;
     void drawFarSide(const CameraRays& rays, const V2d& jitter) const;
     void drawTile(const CameraRays& rays, const V2i& tile);
     void placeLights(const CameraRays& rays);

@@ -245,5 +245,44 @@ TEST(Mentions, FindsWholeIdentifiers) {
     EXPECT_TRUE(mentions("my_roughness, roughness", "roughness"));
 }
 
+// A roof whose half at negative x is cut out by its texture's alpha.
+TEST(Surfaces, CutOutsCastNoShadow) {
+    Mesh roof;
+    for (const V3f& p : {V3f(-1, 1, -1), V3f(-1, 1, 1), V3f(1, 1, 1), V3f(1, 1, -1)}) {
+        roof.positions.push_back(p);
+        roof.normals.emplace_back(0, 1, 0);
+        roof.texcoords.emplace_back(0.5F * (p.x + 1), 0.5F * (p.z + 1));
+    }
+    roof.indices = {0, 1, 2, 0, 2, 3};
+    SurfaceTexture texture{Image(2, 1, 4), Wrap::clamp, Wrap::clamp};
+    for (int x = 0; x < 2; ++x)
+        std::fill_n(texture.image.at(x, 0), 4, static_cast<float>(x));
+    Part part{0, 6, {}};
+    part.surface.base_texture = 0;
+    part.surface.alpha_cutoff = 0.5;
+    Scene scene;
+    scene.object = {roof, {part}, {texture}};
+    scene.material = Material(Shader::lambert);
+    scene.background = ColorBackground(2, 2, 2);
+    scene.ground = Ground{0, V3d(0.5)};
+    scene.lights = {{LightType::directional, V3d(0, 1, 0), V3d(1), V3d(0), 0, 0}};
+    const Camera camera{{0, 0.8, 3}, {0, 0, 0}, {0, 1, 0}, 40};
+    const int size = 64;
+    const Image drawn = Renderer(softwareContext(), scene, {size, size, 1, {}, 256}).render(camera);
+    const CameraRays rays = cameraRays(camera, size, size);
+    int dark = 0, bright = 0;
+    for (int y = 0; y < size; ++y) {
+        for (int x = 0; x < size; ++x) {
+            const V3d d = rays.direction(x + 0.5, y + 0.5);
+            if (d.y >= 0) continue;
+            const V3d p = rays.eye - d * (rays.eye.y / d.y);
+            if (std::abs(p.x) < 0.05 || std::abs(p.x) > 0.95 || std::abs(p.z) > 0.95) continue;
+            ASSERT_NEAR(drawn.at(x, y)[0], p.x > 0 ? 2 - 0.5 / kPi : 2, 1e-5) << x << " " << y;
+            ++(p.x > 0 ? dark : bright);
+        }
+    }
+    EXPECT_GT(std::min(dark, bright), 100);
+}
+
 } // namespace
 } // namespace ibl
