@@ -1,6 +1,7 @@
 #include "cli/arguments.h"
 
 #include "core/error.h"
+#include "image/write.h"
 
 #include <filesystem>
 #include <string>
@@ -146,6 +147,7 @@ WriteOptions writeOptions(const ImageOutputOptions& output, const CommonOptions&
     options.compression = output.compression;
     options.format = output.format;
     options.threads = common.threads;
+    requireFormat(output.output, options);
     return options;
 }
 

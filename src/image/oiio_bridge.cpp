@@ -17,7 +17,10 @@ OiioModule loadModule(const std::string& name) {
     if (module) {
         functions.read = reinterpret_cast<OiioModule::Read>(::dlsym(module, kOiioReadName));
         functions.write = reinterpret_cast<OiioModule::Write>(::dlsym(module, kOiioWriteName));
-        if (!functions.read || !functions.write) problem = "the module is of another version";
+        functions.hasWriter =
+            reinterpret_cast<OiioModule::HasWriter>(::dlsym(module, kOiioHasWriterName));
+        if (!functions.read || !functions.write || !functions.hasWriter)
+            problem = "the module is of another version";
     }
     if (!problem.empty()) {
         throw Error(ExitCode::missing, name +
@@ -51,7 +54,17 @@ private:
     int fd_;
 };
 
+void requireWriter(const OiioModule& module, const std::string& path, const std::string& format) {
+    if (module.hasWriter(format)) return;
+    throw Error(ExitCode::usage, path + ": there is no writer for '" + format +
+                                     "'; give a name that ends in .exr, .hdr, .png or .tif");
+}
+
 } // namespace
+
+void requireOiioWriter(const std::string& path, const std::string& format) {
+    requireWriter(loadModule(path), path, format);
+}
 
 ImageFile readOiio(const Source& source, const ReadOptions& options) {
     const OiioModule module = loadModule(source.name);
@@ -67,12 +80,11 @@ ImageFile readOiio(const Source& source, const ReadOptions& options) {
 WriteLosses writeOiio(OutputFile& file, const Image& image, const std::string& format,
                       const WriteOptions& options) {
     const OiioModule module = loadModule(file.path());
+    requireWriter(module, file.path(), format);
     WriteLosses losses;
     std::string error;
     if (!module.write(file.temporaryPath(), image, format, options, losses, error)) {
-        if (!error.empty()) throw outputError(file.path(), error);
-        throw Error(ExitCode::usage, file.path() + ": there is no writer for '" + format +
-                                         "'; give a name that ends in .exr, .hdr, .png or .tif");
+        throw outputError(file.path(), error);
     }
     return losses;
 }

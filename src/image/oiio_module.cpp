@@ -153,14 +153,19 @@ void encode(std::vector<float>& row, int channels, float largest, WriteLosses& l
     }
 }
 
+std::unique_ptr<ImageOutput> writerOf(const std::string& format) {
+    // They write, but no file.
+    if (format == "term" || format == "null") return nullptr;
+    auto out = ImageOutput::create(format);
+    if (!out) OIIO::geterror();
+    return out;
+}
+
 WriteLosses write(const std::string& path, const Image& image, const std::string& format,
                   const WriteOptions& options) {
     OIIO::attribute("threads", options.threads);
-    const auto out = format == "term" || format == "null" ? nullptr : ImageOutput::create(format);
-    if (!out) {
-        OIIO::geterror();
-        throw std::runtime_error(""); // as OiioModule::Write says
-    }
+    const auto out = writerOf(format);
+    if (!out) throw std::runtime_error("no writer for '" + format + "'");
     const bool tiff = out->format_name() == std::string("tiff");
     const bool as_half = tiff && options.type == PixelType::half;
     const TypeDesc type = as_half ? TypeDesc::HALF : tiff ? TypeDesc::FLOAT : TypeDesc::UINT8;
@@ -223,4 +228,11 @@ ibltoolOiioWrite(const std::string& path, const ibl::Image& image, const std::st
                  std::string& error) noexcept {
     return ibl::withoutExceptions(error,
                                   [&] { losses = ibl::write(path, image, format, options); });
+}
+
+extern "C" __attribute__((visibility("default"))) bool
+ibltoolOiioHasWriter(const std::string& format) noexcept {
+    std::string error;
+    bool has = false;
+    return ibl::withoutExceptions(error, [&] { has = ibl::writerOf(format) != nullptr; }) && has;
 }

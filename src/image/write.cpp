@@ -45,6 +45,13 @@ std::string counted(std::size_t count, const std::string& one, const std::string
 
 } // namespace
 
+void requireFormat(const std::string& path, const WriteOptions& options) {
+    const std::string format = formatOf(path, options);
+    const bool own = format == "exr" || format == "png" || format == "ktx2" || format == "dds" ||
+                     isRadiance(format);
+    if (!own) requireOiioWriter(path, format);
+}
+
 WriteLosses& WriteLosses::operator+=(const WriteLosses& other) {
     above += other.above;
     below += other.below;
