@@ -54,13 +54,16 @@ IBL_INLINE Lanes absoluteLuminance(const PixelLanes& p) {
 }
 
 /// To the nearest integers, of magnitudes up to 2^62. With v = 2^32 high + low, a double of
-/// 1.5 2^52 + high has the integer `high` in its low bits, and so has 1.5 2^52 + low.
+/// 1.5 2^52 + high has the integer `high` in its low bits, and so has 1.5 2^52 + low. The bits
+/// above go over the top, so integers without sign add.
 IBL_INLINE LongLanes rounded(const Lanes& v) {
+    typedef std::uint64_t Bits __attribute__((vector_size(sizeof(LongLanes))));
     const Lanes magic = Lanes{} + 0x1.8p52;
     const Lanes high = v * 0x1p-32 + magic;
     const Lanes low = (v - (high - magic) * 0x1p32) + magic;
-    return (reinterpret_cast<LongLanes>(high) << 32) +
-           (reinterpret_cast<LongLanes>(low) - reinterpret_cast<LongLanes>(magic));
+    return reinterpret_cast<LongLanes>(
+        (reinterpret_cast<Bits>(high) << 32) +
+        (reinterpret_cast<Bits>(low) - reinterpret_cast<Bits>(magic)));
 }
 
 } // namespace ibl
