@@ -41,6 +41,7 @@ std::string extraMessage(const CLI::App& root) {
     const auto option = std::ranges::find_if(
         words, [](const std::string& word) { return word.size() > 1 && word.starts_with('-'); });
     if (option != words.end()) return *option + ": there is no such option";
+    if (root.get_subcommands().empty()) return words.front() + ": there is no such command";
     return words.front() + ": is one word too many";
 }
 

@@ -80,7 +80,7 @@ Source openSource(const std::string& path) {
         }
         source.whole = true;
     }
-    if (source.bytes.empty()) throw inputError(source.name, "is empty; give an image file");
+    if (source.bytes.empty()) throw inputError(source.name, "is empty; export it again");
     return source;
 }
 

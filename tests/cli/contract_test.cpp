@@ -251,6 +251,8 @@ TEST(Contract, UsageIsRefusedInTheUsersWords) {
     refused({"--eye", "0..1,0,4"}, "--eye: '0..1,0,4' is no number");
     refused({"--power", "3"}, "--power: there is no such option");
     refused({"stray"}, "stray: is one word too many");
+    expectRefused(runTool({"bend", "builtin:sky"}, scratch.path()), 1,
+                  "bend: there is no such command");
     EXPECT_TRUE(scratch.names().empty());
 }
 
