@@ -18,6 +18,7 @@ void main() {
     outer_color = shade(facing, incident);
     surface_outside = false;
     inner_color = shade(-facing, incident);
+    // After shade(), which may take it away.
     outer_color += surface_emission;
     inner_color += surface_emission;
     vertex_alpha = surface_alpha;

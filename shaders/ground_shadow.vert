@@ -1,5 +1,5 @@
-// For each shadow map of the sample's lights the part of the ground that it covers: what the light sees through the corners of
-// the map. A corner's ray runs from A (depth 0) to B (depth 1); with g the height above the ground it meets
+// For each shadow map of the sample's lights the part of the ground that it covers: what the light sees
+// through the corners of the map. A corner's ray runs from A (depth 0) to B (depth 1); with g the height above the ground it meets
 // it at (gA B - gB A) / (gA - gB), kept homogeneous, so that rays which rise (w <= 0) are clipped.
 uniform mat4 clip_from_world;
 uniform float ground_height;

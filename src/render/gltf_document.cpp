@@ -177,23 +177,34 @@ std::uint32_t indexAt(const GltfDocument& document, const Rows& rows, std::size_
     }
 }
 
-// Values that replace some of the accessor's.
-void applySparse(const GltfDocument& document, const GltfJson& accessor, std::size_t type,
-                 std::size_t components, bool normalized, std::vector<float>& values) {
+// The rows of an accessor of so many values. One without a bufferView is of zeros, none of which
+// are there, for a sparse one to replace.
+Rows baseRows(const GltfDocument& document, const GltfJson& accessor, std::size_t count,
+              std::size_t type, std::size_t components) {
+    if (accessor.contains("bufferView") || !accessor.contains("sparse"))
+        return rowsOf(document, accessor, count, type, components, true);
+    constexpr std::size_t kMostZeros = std::size_t{1} << 27; // no file's size bounds them
+    if (count > kMostZeros) throw gltfDamaged(document, "an accessor has too many values");
+    return {};
+}
+
+// Calls replace(place, rows, row) for each of the accessor's `count` values that a row replaces.
+template <typename Replace>
+void forEachSparse(const GltfDocument& document, const GltfJson& accessor, std::size_t count,
+                   std::size_t type, std::size_t components, const Replace& replace) {
+    if (!accessor.contains("sparse")) return;
     const GltfJson& sparse = gltfObject(document, accessor, "sparse");
-    const std::size_t count = sizeOf(document, sparse, "count", 0);
+    const std::size_t replaced = sizeOf(document, sparse, "count", 0);
     const GltfJson& indices = gltfObject(document, sparse, "indices");
-    const Rows places =
-        rowsOf(document, indices, count, sizeOf(document, indices, "componentType", 0), 1, false);
+    const Rows places = rowsOf(document, indices, replaced,
+                               sizeOf(document, indices, "componentType", 0), 1, false);
     const Rows rows =
-        rowsOf(document, gltfObject(document, sparse, "values"), count, type, components, false);
-    for (std::size_t i = 0; i < count; ++i) {
+        rowsOf(document, gltfObject(document, sparse, "values"), replaced, type, components, false);
+    for (std::size_t i = 0; i < replaced; ++i) {
         const std::size_t place = indexAt(document, places, i);
-        if (place >= values.size() / components) {
+        if (place >= count)
             throw gltfDamaged(document, "a sparse accessor replaces what is not there");
-        }
-        for (std::size_t c = 0; c < components; ++c)
-            values[place * components + c] = valueAt(rows, i, c, normalized);
+        replace(place, rows, i);
     }
 }
 
@@ -300,26 +311,30 @@ std::vector<float> gltfFloats(const GltfDocument& document, std::size_t index,
     const std::size_t type = sizeOf(document, accessor, "componentType", 0);
     const auto found = accessor.find("normalized");
     const bool normalized = found != accessor.end() && found->is_boolean() && found->get<bool>();
-    const Rows rows = rowsOf(document, accessor, count, type, components, true);
+    const Rows base = baseRows(document, accessor, count, type, components);
     std::vector<float> values(count * components);
-    for (std::size_t i = 0; i < count; ++i) {
+    const auto set = [&](std::size_t place, const Rows& rows, std::size_t row) {
         for (std::size_t c = 0; c < components; ++c)
-            values[i * components + c] = valueAt(rows, i, c, normalized);
-    }
-    if (accessor.contains("sparse")) {
-        applySparse(document, accessor, type, components, normalized, values);
-    }
+            values[place * components + c] = valueAt(rows, row, c, normalized);
+    };
+    for (std::size_t i = 0; i < base.count; ++i)
+        set(i, base, i);
+    forEachSparse(document, accessor, count, type, components, set);
     return values;
 }
 
 std::vector<std::uint32_t> gltfIndices(const GltfDocument& document, std::size_t index) {
     const GltfJson& accessor = gltfArray(document, document.json, "accessors")[index];
     const std::size_t count = sizeOf(document, accessor, "count", 0);
-    const Rows rows =
-        rowsOf(document, accessor, count, sizeOf(document, accessor, "componentType", 0), 1, true);
+    const std::size_t type = sizeOf(document, accessor, "componentType", 0);
+    const Rows base = baseRows(document, accessor, count, type, 1);
     std::vector<std::uint32_t> values(count);
-    for (std::size_t i = 0; i < count; ++i)
-        values[i] = indexAt(document, rows, i);
+    const auto set = [&](std::size_t place, const Rows& rows, std::size_t row) {
+        values[place] = indexAt(document, rows, row);
+    };
+    for (std::size_t i = 0; i < base.count; ++i)
+        set(i, base, i);
+    forEachSparse(document, accessor, count, type, 1, set);
     return values;
 }
 

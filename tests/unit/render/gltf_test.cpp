@@ -1,4 +1,4 @@
-// What glTF 2.0 says of textures, on a square with an image.
+// What glTF 2.0 says of textures and sparse accessors, on a square with an image.
 #include "scene_support.h"
 
 #include "core/error.h"
@@ -68,7 +68,6 @@ struct Square {
     std::vector<float> texcoords{0, 1, 1, 1, 1, 0, 0, 0};
     std::string extra{}, views{};
     std::string positions = R"("bufferView":0)", indices = R"("bufferView":3)";
-    std::string nodes = R"({"mesh":0})";
 };
 constexpr int kExtraAt = 140;
 
@@ -95,22 +94,22 @@ protected:
                                    packed(square.texcoords) +
                                    packed<std::uint16_t>({0, 1, 2, 0, 2, 3}) + square.extra;
         write("square.bin", buffer);
-        write("a.gltf", R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[)" +
-                            square.nodes +
-                            R"(],"meshes":[{"primitives":[{"attributes":{"POSITION":0,"NORMAL":1,)"
-                            R"("TEXCOORD_0":2},"indices":3,"material":0}]}],"materials":[)" +
-                            square.material + R"(],"accessors":[{"componentType":5126,"count":4,)" +
-                            R"("type":"VEC3",)" + square.positions +
-                            R"(},{"componentType":5126,"count":4,"type":"VEC3","bufferView":1},)"
-                            R"({"componentType":5126,"count":4,"type":"VEC2","bufferView":2},)"
-                            R"({"componentType":5123,"count":6,"type":"SCALAR",)" +
-                            square.indices +
-                            R"(}],"bufferViews":[{"buffer":0,"byteLength":48},)"
-                            R"({"buffer":0,"byteOffset":48,"byteLength":48},)"
-                            R"({"buffer":0,"byteOffset":96,"byteLength":32},)"
-                            R"({"buffer":0,"byteOffset":128,"byteLength":12})" +
-                            square.views + R"(],"buffers":[{"uri":"square.bin","byteLength":)" +
-                            std::to_string(buffer.size()) + "}]" + square.more + "}");
+        write("a.gltf",
+              R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],)"
+              R"("meshes":[{"primitives":[{"attributes":{"POSITION":0,"NORMAL":1,)"
+              R"("TEXCOORD_0":2},"indices":3,"material":0}]}],"materials":[)" +
+                  square.material + R"(],"accessors":[{"componentType":5126,"count":4,)" +
+                  R"("type":"VEC3",)" + square.positions +
+                  R"(},{"componentType":5126,"count":4,"type":"VEC3","bufferView":1},)"
+                  R"({"componentType":5126,"count":4,"type":"VEC2","bufferView":2},)"
+                  R"({"componentType":5123,"count":6,"type":"SCALAR",)" +
+                  square.indices +
+                  R"(}],"bufferViews":[{"buffer":0,"byteLength":48},)"
+                  R"({"buffer":0,"byteOffset":48,"byteLength":48},)"
+                  R"({"buffer":0,"byteOffset":96,"byteLength":32},)"
+                  R"({"buffer":0,"byteOffset":128,"byteLength":12})" +
+                  square.views + R"(],"buffers":[{"uri":"square.bin","byteLength":)" +
+                  std::to_string(buffer.size()) + "}]" + square.more + "}");
         return readObject(folder_ + "/a.gltf");
     }
 
@@ -313,6 +312,46 @@ TEST_F(Gltf, TexturesGoOnAsTheirSamplersSay) {
                        image("png", kFourPng)};
     EXPECT_EQ(read(plain).object.textures.at(0).across, Wrap::repeat);
     EXPECT_EQ(read(plain).object.textures.at(0).down, Wrap::repeat);
+}
+
+TEST_F(Gltf, SparsePositionsReplaceWhatThereIsOrZeros) {
+    const auto sparse = [](const char* base, int count) {
+        return std::string(base) + R"("sparse":{"count":)" + std::to_string(count) +
+               R"(,"indices":{"bufferView":4,"componentType":5123},"values":{"bufferView":5}})";
+    };
+    Square square;
+    square.extra =
+        packed<std::uint16_t>({1, 2, 3, 0}) + packed<float>({2, -1, 0, 1, 3, 0, -1, 1, 0.5F});
+    square.views = R"(,{"buffer":0,"byteOffset":140,"byteLength":8})"
+                   R"(,{"buffer":0,"byteOffset":148,"byteLength":36})";
+    const V3f one(2, -1, 0), two(1, 3, 0), three(-1, 1, 0.5F);
+    square.positions = sparse("", 3);
+    EXPECT_EQ(read(square).object.mesh->positions, (std::vector{V3f(0), one, two, three}));
+    square.positions = sparse(R"("bufferView":0,)", 2);
+    EXPECT_EQ(read(square).object.mesh->positions,
+              (std::vector{V3f(-1, -1, 0), one, two, V3f(-1, 1, 0)}));
+    square.positions = R"("byteOffset":0)"; // neither a view nor sparse
+    EXPECT_THROW(read(square), Error);
+}
+
+TEST_F(Gltf, SparseIndicesReplaceCorners) {
+    const auto drawn = [&](int code, const std::string& place) {
+        Square square;
+        square.extra = place + packed<std::uint16_t>({1});
+        const std::string size = std::to_string(place.size());
+        square.views = R"(,{"buffer":0,"byteOffset":140,"byteLength":)" + size +
+                       R"(},{"buffer":0,"byteOffset":)" + std::to_string(140 + place.size()) +
+                       R"(,"byteLength":2})";
+        square.indices = R"("bufferView":3,"sparse":{"count":1,"indices":{"bufferView":4,)"
+                         R"("componentType":)" +
+                         std::to_string(code) + R"(},"values":{"bufferView":5}})";
+        return read(square).object.mesh->indices;
+    };
+    const std::vector<std::uint32_t> expected{0, 1, 2, 0, 1, 3};
+    EXPECT_EQ(drawn(5121, packed<std::uint8_t>({4})), expected);
+    EXPECT_EQ(drawn(5123, packed<std::uint16_t>({4})), expected);
+    EXPECT_EQ(drawn(5125, packed<std::uint32_t>({4})), expected);
+    EXPECT_THROW(drawn(5123, packed<std::uint16_t>({6})), Error); // no such place
 }
 
 } // namespace
