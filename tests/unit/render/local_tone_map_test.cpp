@@ -78,7 +78,8 @@ TEST(Retinex, FlatPicturesHaveAClosedForm) {
     }
 }
 
-// The operator in plain loops: Gaussian pyramid by 1 5 8 5 1 / 20, bilinear between samples.
+// The operator in plain loops: Gaussian pyramid by 1 5 8 5 1 / 20, bilinear between samples, over a
+// picture whose border goes on as far as anything is read.
 struct Level {
     int width, height;
     std::vector<double> values;
@@ -114,14 +115,20 @@ TEST(ReinhardLocal, IsDodgingAndBurning) {
     options.parameters = {phi, contrast};
     options.key = key;
     const Image seen = shown(options, picture);
-    std::vector<Level> levels{{width, height, {}}};
-    for (int i = 0; i < width * height; ++i) {
-        const float* p = &picture.pixels[static_cast<std::size_t>(3 * i)];
-        levels[0].values.push_back(0.2126 * p[0] + 0.7152 * p[1] + 0.0722 * p[2]);
+    const int margin = 512, edge = 1280; // multiples of 128
+    std::vector<Level> levels{{edge, edge, {}}};
+    for (int y = 0; y < edge; ++y) {
+        for (int x = 0; x < edge; ++x) {
+            const float* p = picture.at(std::clamp(x - margin, 0, width - 1),
+                                        std::clamp(y - margin, 0, height - 1));
+            levels[0].values.push_back(0.2126 * p[0] + 0.7152 * p[1] + 0.0722 * p[2]);
+        }
     }
-    for (int k = 1, w = 128, h = 128; k < 8; ++k, w /= 2, h /= 2)
-        levels.push_back(nextLevel(levels.back(), w, h));
+    for (int k = 1; k < 8; ++k)
+        levels.push_back(nextLevel(levels.back(), edge >> k, edge >> k));
     const auto between = [&](int x, int y, int k) {
+        x += margin;
+        y += margin;
         const Level& level = levels[static_cast<std::size_t>(k)];
         const int step = 1 << k, i = x / step, j = y / step;
         const double s = static_cast<double>(x - i * step) / step;
