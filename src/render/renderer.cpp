@@ -132,8 +132,9 @@ void Renderer::State::makeSurface(const Scene& scene) {
                           options.shader_folder);
     setUniform(surface, "specular_scale", specular_scale);
     if (mesh && mapNeeds(scene.material).far_side) {
-        far_side = makeFarSide({options.width, options.height},
-                               makeProgram(farSideParts(kind), options.shader_folder));
+        far_side = makeFarSide(
+            {options.width, options.height},
+            makeProgram(farSideParts(kind, surfaces.definitions), options.shader_folder));
     }
 }
 
