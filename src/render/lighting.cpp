@@ -88,12 +88,8 @@ Lighting::Lighting(const Scene& scene, const std::vector<std::string>& surfaces,
       map_size_(map_size),
       samples_(samples) {
     if (maps_needed_) {
-        const bool cut_outs = std::ranges::any_of(
-            scene.object.parts, [](const Part& part) { return part.surface.alpha_cutoff > 0; });
-        std::vector<std::string> definitions = surfaces;
-        definitions.push_back("CUT_OUTS " + std::to_string(cut_outs ? 1 : 0));
         draw_depth_ =
-            makeProgram({{"shadow_map.vert"}, {"surface.glsl", "shadow_map.frag"}, definitions, {}},
+            makeProgram({{"shadow_map.vert"}, {"surface.glsl", "shadow_map.frag"}, surfaces, {}},
                         shader_folder);
         GLuint id = 0;
         glCreateFramebuffers(1, &id);
