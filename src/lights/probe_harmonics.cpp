@@ -96,24 +96,30 @@ void addRows(const Image& probe, const std::vector<RowTap>& taps, float* line) {
     }
 }
 
-/// Adds the line's pixels (RGB, and one float after the last) to the grid's columns of four floats;
-/// the taps reach one column beyond the left, three the right.
+/// Spreads the line's pixels (RGB, and one float after the last) over the grid's columns of four
+/// floats, which are zero before; the taps reach one column beyond the left, three the right. The
+/// four columns that pixels go to are kept in registers until no pixel goes to them any more.
 IBL_MULTIVERSION
 void spreadColumns(const float* line, const std::vector<ColumnTap>& columns, float* grid) {
-    std::size_t i = 0;
-    while (i < columns.size()) {
-        float* out = grid + 4 * (columns[i].first + 1);
-        FloatLanes sums[4];
-        __builtin_memcpy(sums, out, sizeof sums);
-        for (const int first = columns[i].first; i < columns.size() && columns[i].first == first;
-             ++i) {
-            FloatLanes pixel;
-            __builtin_memcpy(&pixel, line + 3 * i, sizeof pixel);
-            for (std::size_t k = 0; k < 4; ++k)
-                sums[k] += columns[i].weight[k] * pixel;
+    FloatLanes sums[4]{};
+    int first = columns[0].first;
+    const auto put = [&](const FloatLanes& sum) __attribute__((always_inline)) {
+        __builtin_memcpy(grid + 4 * (first++ + 1), &sum, sizeof sum);
+    };
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+        while (first < columns[i].first) {
+            put(sums[0]);
+            for (std::size_t k = 0; k < 3; ++k)
+                sums[k] = sums[k + 1];
+            sums[3] = FloatLanes{};
         }
-        __builtin_memcpy(out, sums, sizeof sums);
+        FloatLanes pixel;
+        __builtin_memcpy(&pixel, line + 3 * i, sizeof pixel);
+        for (std::size_t k = 0; k < 4; ++k)
+            sums[k] += columns[i].weight[k] * pixel;
     }
+    for (const FloatLanes& sum : sums)
+        put(sum);
 }
 
 /// A row of the grid, four floats a column, after one that is not part of it.
