@@ -20,6 +20,7 @@ void addPixelRow(const float* rgb, const ColumnMoments& columns, const double (&
     const Lanes weights = loadLanes(row);
     int i = 0;
     for (; i + kLanes <= width; i += kLanes) {
+        fetchAhead(rgb + 3 * i);
         const Lanes luminance = absoluteLuminance(pixelLanes(rgb + 3 * i));
         Lanes v[kLanes];
         for (int k = 0; k < kLanes; ++k)
