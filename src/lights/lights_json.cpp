@@ -22,7 +22,7 @@ void append(std::string& text, std::initializer_list<double> values) {
     const char* separator = "[";
     for (const double value : values) {
         text += separator;
-        text += shortestNumber(value);
+        appendNumber(text, value);
         separator = ", ";
     }
     text += ']';
@@ -34,10 +34,13 @@ void append(std::string& text, const Light& light, const V3d& total) {
     append(text, {light.direction.x, light.direction.y, light.direction.z});
     text += ", \"irradiance\": ";
     append(text, {light.irradiance.x, light.irradiance.y, light.irradiance.z});
-    text += ", \"solid_angle\": " + shortestNumber(light.solid_angle);
-    text += ", \"share\": " + shortestNumber(energyShare(light, total));
-    if (light.angular_radius)
-        text += ", \"angular_radius\": " + shortestNumber(*light.angular_radius);
+    const auto appendMember = [&](const char* before, double value) {
+        text += before;
+        appendNumber(text, value);
+    };
+    appendMember(", \"solid_angle\": ", light.solid_angle);
+    appendMember(", \"share\": ", energyShare(light, total));
+    if (light.angular_radius) appendMember(", \"angular_radius\": ", *light.angular_radius);
     if (light.region) {
         const AngularRegion& region = *light.region;
         text += ", \"region\": {\"longitude\": ";
