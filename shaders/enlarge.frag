@@ -1,6 +1,6 @@
-// One step up a pyramid: this level's own share, smoothed by 1 4 6 4 1 / 16 along each axis, which makes
-// a Gaussian of its tents, and what comes from the coarser level, enlarged. Defined as 0 or 1: COARSEST
-// (there is no coarser level), EVEN (it is exactly half as large).
+// One step up a pyramid: this level's own share, smoothed by 1 4 6 4 1 / 16 along each axis, which
+// makes a Gaussian of its tents, and what comes from the coarser level, enlarged. Defined as 0 or
+// 1: COARSEST (there is no coarser level), EVEN (it is exactly half as large).
 layout(binding = 0) uniform sampler2D own;
 layout(binding = 1) uniform sampler2D coarse;
 uniform float own_weight;

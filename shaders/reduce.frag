@@ -1,5 +1,5 @@
-// A reduction from n to m pixels a side (see resize.glsl). Defined as 0 or 1: SOURCE_IS_FRAME (what is
-// read is the picture itself, to be exposed, of which the bright part is taken), EVEN (n = 2 m).
+// A reduction from n to m pixels a side (see resize.glsl). Defined as 0 or 1: SOURCE_IS_FRAME (what
+// is read is the picture itself, to be exposed, of which the bright part is taken), EVEN (n = 2 m).
 layout(binding = 0) uniform sampler2D fine;
 uniform ivec2 n; // size of the whole fine picture
 uniform ivec2 m;
