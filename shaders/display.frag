@@ -23,7 +23,7 @@ void main() {
 #if GLOW
     c *= 1.0 - bright_weight * brightShare(c) - glare_weight;
 #if EVEN
-    c += enlargedTwice(glow, framePixel());
+    c += enlargedTwice(glow, framePixel(), frame_size);
 #else
     c += enlarged(glow, framePixel(), frame_size);
 #endif
