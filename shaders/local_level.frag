@@ -1,15 +1,15 @@
 // A level of the pyramid of Gaussians of reinhard_local.glsl: every second sample of the finer one, by
-// 1 5 8 5 1 / 20 along each axis, the border's samples going on outside. Defined as 0 or 1: PICTURE (the
-// finer one is the picture, of which the texture holds a part).
+// 1 5 8 5 1 / 20 along each axis. Defined as 0 or 1: PICTURE (the finer one is the picture, of which the
+// texture holds a part, and whose border goes on outside).
 layout(binding = 0) uniform sampler2D fine;
 uniform ivec2 fine_size;   // of the whole
 uniform ivec2 fine_origin; // of the part that the texture holds
-uniform ivec2 made_origin;
+uniform int margin; // samples ahead of the picture's first
 out vec4 color;
 
 void main() {
     const float weights[5] = float[](0.05, 0.25, 0.4, 0.25, 0.05);
-    ivec2 centre = 2 * (ivec2(gl_FragCoord.xy) + made_origin);
+    ivec2 centre = 2 * (ivec2(gl_FragCoord.xy) - margin);
     float sum = 0.0;
     for (int j = 0; j < 5; ++j) {
         for (int i = 0; i < 5; ++i) {

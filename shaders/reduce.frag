@@ -6,25 +6,16 @@ uniform ivec2 m;
 uniform ivec2 fine_origin; // of the texture that holds a part of it
 out vec4 color;
 
-#if SOURCE_IS_FRAME
-const int reach = 0; // of the kernel, beyond the pixel's own width, in halves of it
-#define INTEGRAL boxIntegral
-#else
-const int reach = 1;
-#define INTEGRAL tentIntegral
-#endif
-
-// The first fine pixel that pixel i reads, and the place of its left edge from the kernel's middle.
+// The first fine pixel that pixel i reads, and the place of its left edge from the tent's middle.
 int readFrom(int i, int fine_edge, int made_edge, out float place) {
-    int first = floorDivide((2 * i - reach) * fine_edge, 2 * made_edge);
+    int first = floorDivide((2 * i - 1) * fine_edge, 2 * made_edge);
     place = float(2 * (first * made_edge - i * fine_edge) - fine_edge) / float(2 * fine_edge);
     return first;
 }
 
-// As many as a kernel touches; when halving exactly it begins and ends at edges.
+// As many as a tent touches; when halving exactly it begins and ends at edges.
 int tapsOf(int fine_edge, int made_edge) {
-    float width = float((1 + reach) * fine_edge) / float(made_edge);
-    return fine_edge == 2 * made_edge ? 2 + 2 * reach : int(ceil(width)) + 1;
+    return fine_edge == 2 * made_edge ? 4 : int(ceil(float(2 * fine_edge) / float(made_edge))) + 1;
 }
 
 void main() {
@@ -33,14 +24,14 @@ void main() {
     ivec2 first = ivec2(readFrom(at.x, n.x, m.x, place.x), readFrom(at.y, n.y, m.y, place.y));
     ivec2 taps = ivec2(tapsOf(n.x, m.x), tapsOf(n.y, m.y));
     vec3 sum = vec3(0.0);
-    float above = INTEGRAL(place.y);
+    float above = tentIntegral(place.y);
     for (int k = 0; k < taps.y; ++k) {
-        float below = INTEGRAL(place.y + float(k + 1) * step.y);
+        float below = tentIntegral(place.y + float(k + 1) * step.y);
         int y = mirrored(first.y + k, n.y) - fine_origin.y;
         vec3 row = vec3(0.0);
-        float before = INTEGRAL(place.x);
+        float before = tentIntegral(place.x);
         for (int j = 0; j < taps.x; ++j) {
-            float after = INTEGRAL(place.x + float(j + 1) * step.x);
+            float after = tentIntegral(place.x + float(j + 1) * step.x);
             vec3 c = texelFetch(fine, ivec2(mirrored(first.x + j, n.x) - fine_origin.x, y), 0).rgb;
 #if SOURCE_IS_FRAME
             c = brightPart(exposed(c));

@@ -3,14 +3,16 @@
 //     |V(s) - V(s + 1)| / (2^phi key / s^2 + V(s)) < local-contrast.
 // As in the authors' own program, V is a pyramid of Gaussians (Burt and Adelson 1983) whose level k has a
 // sample at every 2^k th pixel, bilinear between them, and s grows from 1 to 43 over eight levels.
-// Level k >= 1 is mip level k - 1 of `levels`; level 0 is the picture.
+// Outside, the picture's border goes on (in that program it is black there, which brightens the border).
+// Level k >= 1 is mip level k - 1 of `levels`, with a margin of 2^(8-k) samples; level 0 is the picture.
 layout(binding = 2) uniform sampler2D levels;
 uniform float key;
 
 float localLuminance(ivec2 at, int level) {
-    ivec2 low = at >> level, last = textureSize(levels, level - 1) - 1;
+    ivec2 low = at >> level;
     vec2 t = vec2(at - (low << level)) / float(1 << level);
-    ivec2 high = min(low + 1, last);
+    low += 256 >> level;
+    ivec2 high = low + 1;
     float a = texelFetch(levels, low, level - 1).r;
     float b = texelFetch(levels, ivec2(high.x, low.y), level - 1).r;
     float c = texelFetch(levels, ivec2(low.x, high.y), level - 1).r;

@@ -7,16 +7,12 @@
 // by m / n in all and every coarse one gives n / m: flat pictures stay flat and no energy is lost, at
 // odd sizes and at the borders. Places are differences of integers, so they stay exact however large
 // the picture is. For n = 2 m the weights are 1 3 3 1 / 8, whose repetition tends to smooth splines.
-// All this holds of any kernel whose shifted copies sum to 1.
 
 float tentIntegral(float u) {
     u = clamp(u, -1.0, 1.0);
     float rest = 1.0 - abs(u);
     return u < 0.0 ? 0.5 * rest * rest : 1.0 - 0.5 * rest * rest;
 }
-
-// The same for boxes, with which the picture itself is reduced: a tent reads each pixel four times.
-float boxIntegral(float u) { return clamp(u + 0.5, 0.0, 1.0); }
 
 int mirrored(int i, int n) {
     i = i < 0 ? -1 - i : i;

@@ -22,6 +22,7 @@ struct BakeOptions {
     QualityOptions quality;
     std::optional<PixelType> type;
     std::string folder;
+    std::string format = "exr";
     int size = 256;
     std::optional<int> levels;
     RoughnessMap roughness_map = RoughnessMap::linear;
@@ -38,7 +39,7 @@ public:
         made_ = std::filesystem::create_directory(path_, problem);
         if (problem)
             throw outputError(path, "the folder cannot be made (" + problem.message() +
-                                        "); name one in a folder that is there");
+                                        "); name one in a folder that is there and takes files");
     }
     ~BakeFolder() {
         std::error_code ignored; // a folder that holds something stays
@@ -63,14 +64,24 @@ std::string manifest(const BakeOptions& options, const nlohmann::ordered_json& m
     json["source"] = options.probe.input;
     json["axes"] = "right-handed, +Y up; faces +X -X +Y -Y +Z -Z as OpenGL samples them";
     json["radiance"] = "scene-linear; diffuse is irradiance / pi";
-    json["diffuse"] = {{"files", "diffuse_{px,nx,py,ny,pz,nz}.exr"}, {"size", maps[0]["size"]}};
+    const bool faces = options.format == "exr"; // otherwise a file with all faces and levels
+    const auto files = [&](const std::string& map, const std::string& level) {
+        nlohmann::ordered_json entry;
+        if (faces) {
+            entry["files"] = map + level + "_{px,nx,py,ny,pz,nz}.exr";
+        } else {
+            entry["file"] = map + "." + options.format;
+        }
+        return entry;
+    };
+    json["diffuse"] = files("diffuse", "");
+    json["diffuse"]["size"] = maps[0]["size"];
     auto& levels = json["specular"] = nlohmann::ordered_json::array();
     for (std::size_t k = 1; k < maps.size(); ++k) {
-        levels.push_back(
-            {{"files", "specular_m" + std::to_string(k - 1) + "_{px,nx,py,ny,pz,nz}.exr"},
-             {"size", maps[k]["size"]},
-             {"kernel", maps[k]["kernel"]},
-             {"roughness", maps[k]["roughness"]}});
+        auto entry = files("specular", "_m" + std::to_string(k - 1));
+        for (const char* key : {"size", "kernel", "roughness"})
+            entry[key] = maps[k][key];
+        levels.push_back(entry);
     }
     json["coefficients"] = {{"file", "sh.json"}, {"convention", "radiance"}, {"order", 3}};
     json["lights"] = {{"file", "lights.json"}, {"count", lights}};
@@ -112,10 +123,16 @@ void runBake(const BakeOptions& options) {
     how.type = options.type.value_or(PixelType::float32);
     how.threads = session.threads();
     session.stage("write", [&] {
-        session.write(folder.file("diffuse.exr"), results[0].map, how);
-        for (std::size_t k = 1; k < results.size(); ++k) {
-            session.write(levelName(folder.file("specular.exr"), static_cast<int>(k) - 1),
-                          results[k].map, how);
+        session.write(folder.file("diffuse." + options.format), results[0].map, how);
+        const std::string specular = folder.file("specular." + options.format);
+        if (isCubeContainer(specular)) {
+            std::vector<const Image*> chain;
+            for (std::size_t k = 1; k < results.size(); ++k)
+                chain.push_back(&results[k].map.image);
+            session.write(specular, chain, how);
+        } else {
+            for (std::size_t k = 1; k < results.size(); ++k)
+                session.write(levelName(specular, static_cast<int>(k) - 1), results[k].map, how);
         }
         session.writeText(folder.file("lights.json"), lightsJson(lights));
         session.writeText(folder.file("sh.json"), shJson(sh, options.probe.input, false, 0));
@@ -152,6 +169,13 @@ Command bindBake(CLI::App& root) {
     app->add_option("--lights", options->lights, "How many median-cut lights, 1 to 65536")
         ->check(CLI::Range(1, 65536))
         ->type_name("N")
+        ->capture_default_str()
+        ->group("Output");
+    app->add_option("--format", options->format,
+                    "Of the maps: exr, a file a face and level; ktx2 or dds, one cube map with "
+                    "all levels")
+        ->check(CLI::IsMember({"exr", "ktx2", "dds"}))
+        ->type_name("FORMAT")
         ->capture_default_str()
         ->group("Output");
     bindType(*app, options->type);

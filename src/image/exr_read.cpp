@@ -307,6 +307,16 @@ ImageFile readParts(Imf::IStream& stream, const std::string& name, const ReadOpt
     return file;
 }
 
+/// What OpenEXR found wrong, without the file's name and what it was about when it did, which it
+/// puts ahead ('Error reading pixel data from image file "NAME". '), and without the full stop.
+std::string plainProblem(const std::string& said) {
+    constexpr std::string_view kAhead = "\". ";
+    const std::size_t ahead = said.rfind(kAhead);
+    std::string problem = ahead == said.npos ? said : said.substr(ahead + kAhead.size());
+    if (problem.ends_with('.')) problem.pop_back();
+    return problem;
+}
+
 } // namespace
 
 int exrThreads(int threads) {
@@ -326,7 +336,7 @@ ImageFile readExr(const Source& source, const ReadOptions& options) {
         throw inputError(source.name, "does not fit into memory; shrink it first");
     } catch (const std::exception& e) {
         throw inputError(source.name, std::string("is a damaged or truncated OpenEXR file (") +
-                                          e.what() + "); write it again");
+                                          plainProblem(e.what()) + "); write it again");
     }
 }
 

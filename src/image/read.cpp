@@ -21,6 +21,17 @@ bool startsWith(const Source& source, std::string_view magic) {
                       [](char a, std::uint8_t b) { return static_cast<std::uint8_t>(a) == b; });
 }
 
+/// Cube maps as this program writes them: KTX, and DDS with the header of Direct3D 10.
+void refuseCubeContainer(const Source& source) {
+    constexpr std::size_t kFourCc = 84;
+    const bool dds = startsWith(source, "DDS ") && source.bytes.size() >= kFourCc + 4 &&
+                     std::equal(&source.bytes[kFourCc], &source.bytes[kFourCc + 4], "DX10");
+    if (!dds && !startsWith(source, "\xABKTX ")) return;
+    throw inputError(source.name, std::string("is a ") + (dds ? "DDS" : "KTX") +
+                                      " container, which is written but not read; give the "
+                                      "probe that it was made from, or faces as EXR files");
+}
+
 /// A format can only have the layer that it is.
 void refuseLayer(const Source& source, const ReadOptions& options) {
     if (!options.layer.empty()) {
@@ -40,6 +51,7 @@ ImageFile readSource(Source& source, const ReadOptions& options) {
         readWhole(source);
         return readPng(source.bytes, source.name, options);
     }
+    refuseCubeContainer(source);
     return readOiio(source, options);
 }
 

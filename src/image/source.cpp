@@ -13,7 +13,7 @@
 namespace ibl {
 namespace {
 
-constexpr std::size_t kFirstBytes = 64;
+constexpr std::size_t kFirstBytes = 128;
 /// Of a stream, which may have no end.
 constexpr std::size_t kMostOfStream = std::size_t{4} << 30;
 

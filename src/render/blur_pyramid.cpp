@@ -36,17 +36,6 @@ std::pair<int, int> readRange(int begin, int end, int n, int m) {
             std::min(n, static_cast<int>(std::ceil((end + 0.5) * ratio)) + 1)};
 }
 
-void enlarge(Passes& passes, const Target& coarse, double coarse_weight, const Target* own,
-             double own_weight, const Target& to, bool adding) {
-    const Program& program = passes.program({"resize.glsl", "enlarge.frag"});
-    setUniform(program, "size", to.size);
-    setUniform(program, "coarse_weight", coarse_weight);
-    setUniform(program, "own_weight", own ? own_weight : 0.0);
-    glBindTextureUnit(0, coarse.texture.id());
-    if (own) glBindTextureUnit(1, own->texture.id());
-    adding ? passes.add(program, to) : passes.draw(program, to);
-}
-
 Target gauss(Passes& passes, const Target& picture, const V2d& deviation) {
     const Program& program = passes.program({"resize.glsl", "gauss.frag"});
     setUniform(program, "deviation", deviation.x);
@@ -64,15 +53,15 @@ Target gauss(Passes& passes, const Target& picture, const V2d& deviation) {
 
 // How far a pyramid has come, along each axis: the size of a pixel and the variance of the way down
 // and back up, both in the picture's pixels. By a ratio r, a tent has the variance r^2 / 6 + 1/12
-// each way, the 1/12 for the pixels that it is integrated over; a box r^2 / 12 - 1/12.
+// each way, the 1/12 for the pixels that it is integrated over.
 struct Progress {
     V2d cell{1, 1};
     V2d variance{0, 0};
 
-    Progress then(const V2i& fine, const V2i& made, bool by_box) const {
+    Progress then(const V2i& fine, const V2i& made) const {
         const V2d ratio(static_cast<double>(fine.x) / made.x, static_cast<double>(fine.y) / made.y);
-        const V2d tent = ratio * ratio / 6 + V2d(1.0 / 12), box = (ratio * ratio - V2d(1)) / 12;
-        return {cell * ratio, variance + cell * cell * (tent + (by_box ? box : tent))};
+        const V2d tent = ratio * ratio / 6 + V2d(1.0 / 12);
+        return {cell * ratio, variance + cell * cell * tent * 2};
     }
     /// What remains to be blurred by, in pixels of the level, squared.
     V2d rest(double deviation) const {
@@ -83,7 +72,7 @@ struct Progress {
 } // namespace
 
 double levelOfDeviation(double deviation) {
-    return std::max(1.0, 0.5 * std::log2(2 * deviation * deviation + 2));
+    return std::max(1.0, 0.5 * std::log2((deviation * deviation + 0.5) / 1.5));
 }
 
 Target reduceFrame(Passes& passes, FrameTiles& tiles, double exposure,
@@ -120,30 +109,31 @@ void addLevels(Passes& passes, const Target& base, std::span<const double> weigh
     for (std::size_t l = 1; l < weights.size(); ++l) {
         levels.push_back(halved(passes, l == 1 ? base : levels.back()));
     }
-    const auto level = [&](std::size_t l) -> const Target& {
-        return l == 0 ? base : levels[l - 1];
-    };
-    if (weights.size() == 1) {
-        enlarge(passes, base, weights[0], nullptr, 0, sum, true);
-        return;
-    }
+    const Program& program = passes.program({"resize.glsl", "enlarge.frag"});
     Target carried;
-    for (std::size_t l = weights.size() - 1; l > 0; --l) {
-        const bool coarsest = l + 1 == weights.size();
-        Target made = l > 1 ? makeTarget(level(l - 1).size, GL_RGBA32F) : Target();
-        enlarge(passes, coarsest ? level(l) : carried, coarsest ? weights[l] : 1.0, &level(l - 1),
-                weights[l - 1], l > 1 ? made : sum, l == 1);
-        carried = std::move(made);
+    for (std::size_t l = weights.size(); l-- > 0;) {
+        const Target& own = l == 0 ? base : levels[l - 1];
+        setUniform(program, "own_weight", weights[l]);
+        setUniform(program, "is_coarsest", static_cast<int>(l + 1 == weights.size()));
+        glBindTextureUnit(0, own.texture.id());
+        if (carried.texture) glBindTextureUnit(1, carried.texture.id());
+        if (l == 0) {
+            passes.add(program, sum);
+        } else {
+            Target made = makeTarget(own.size, GL_RGBA32F);
+            passes.draw(program, made);
+            carried = std::move(made);
+        }
     }
 }
 
 Target blurred(Passes& passes, const Target& base, const V2i& frame, double deviation) {
-    Progress progress = Progress().then(frame, base.size, true);
+    Progress progress = Progress().then(frame, base.size);
     const Target* picture = &base;
     Target level;
     while (std::max(picture->size.x, picture->size.y) > 1) {
         const V2i next = halfOf(picture->size);
-        const Progress further = progress.then(picture->size, next, false);
+        const Progress further = progress.then(picture->size, next);
         const V2d rest = further.rest(deviation);
         if (std::min(rest.x, rest.y) < 4) break; // a Gaussian needs some pixels to be one
         level = halved(passes, *picture);

@@ -1,10 +1,11 @@
 // Blurs of a picture by pyramids. Internal to the render layer.
 //
 // Levels halve the size, rounded up; the formulas stand in shaders/resize.glsl. Blurs keep flat
-// pictures flat and lose no energy. A level l enlarged again is the picture blurred by very nearly
-// a Gaussian. The first reduction averages 2x2 pixels, of variance 1/4, the others weigh by 1 3 3 1
-// / 8, of variance 3/4 in pixels of what they read, as do all steps back up; its variance is
-//     1/4 + 3/4 (4 + ... + 4^(l-1)) + 3/4 (1 + 4 + ... + 4^(l-1)) = 4^l / 2 - 1.
+// pictures flat and lose no energy. Steps down and up weigh by 1 3 3 1 / 8, of variance 3/4 in
+// pixels of the finer level, and a level is smoothed by 1 4 6 4 1 / 16, of variance 1 in its own,
+// ahead of its way up: level l enlarged again is the picture blurred by very nearly a Gaussian, of
+// the variance
+//     2 * 3/4 (1 + 4 + ... + 4^(l-1)) + 4^l = 3/2 4^l - 1/2.
 #pragma once
 
 #include "render/frame_tiles.h"
@@ -15,7 +16,7 @@
 
 namespace ibl {
 
-/// The l (not a whole number) whose variance 4^l / 2 - 1 is that of `deviation`, in pixels of the
+/// The l (not a whole number) whose variance 3/2 4^l - 1/2 is that of `deviation`, in pixels of the
 /// picture; 1 at least.
 double levelOfDeviation(double deviation);
 
@@ -25,8 +26,8 @@ double levelOfDeviation(double deviation);
 Target reduceFrame(Passes& passes, FrameTiles& tiles, double exposure,
                    std::optional<double> threshold);
 
-/// Adds sum over l of weights[l - 1] (level l enlarged to level 1) to `sum`, of the size of `base`,
-/// which is level 1.
+/// Adds sum over l of weights[l - 1] (level l smoothed and enlarged to level 1) to `sum`, of the
+/// size of `base`, which is level 1.
 void addLevels(Passes& passes, const Target& base, std::span<const double> weights,
                const Target& sum);
 

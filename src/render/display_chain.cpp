@@ -187,17 +187,21 @@ Target DisplayChain::State::retinexSurrounds(FrameTiles& tiles, double exposure)
     return sum;
 }
 
-// The pyramid of reinhard_local.glsl, seven levels as a texture's mip levels.
+// The pyramid of reinhard_local.glsl, seven levels as a texture's mip levels. The picture goes on
+// outside, as far as the last level's samples about it look: sample i reads 2 i - 2 to 2 i + 2 of
+// the level below, so in level 1 that is 126 ahead of the first and behind the last.
 Texture DisplayChain::State::localLevels(FrameTiles& tiles, double exposure) {
-    constexpr int kLevels = 7, kMultiple = 1 << kLevels;
+    constexpr int kLevels = 7, kCoarsest = 1 << (kLevels - 1), kMargin = 2 * kCoarsest;
     const V2i frame = tiles.frameSize();
-    const auto paddedHalf = [](int n) {
-        return kMultiple * ((n + 2 * kMultiple - 1) / (2 * kMultiple));
+    const auto widened = [](int n) {
+        const int last = (n - 1) / (2 * kCoarsest) + 1; // level 7's, at the pixels' right
+        return kMargin + last * kCoarsest + kMargin;
     };
-    const V2i size{paddedHalf(frame.x), paddedHalf(frame.y)};
+    const V2i size{widened(frame.x), widened(frame.y)};
     const int limit = getInteger(GL_MAX_TEXTURE_SIZE);
     if (std::max(size.x, size.y) > limit) {
-        throw usage("reinhard-local takes pictures of up to " + std::to_string(2 * limit) +
+        throw usage("reinhard-local takes pictures of up to " +
+                    std::to_string(2 * (limit - 2 * kMargin - kCoarsest)) +
                     " pixels a side on this device; shrink it first");
     }
     GLuint id = 0;
@@ -209,6 +213,7 @@ Texture DisplayChain::State::localLevels(FrameTiles& tiles, double exposure) {
     const Program& first = passes.program({"exposure.glsl", "local_level.frag"}, {"PICTURE 1"});
     setUniform(first, "exposure", exposure);
     setUniform(first, "fine_size", frame);
+    setUniform(first, "margin", kMargin);
     const Framebuffer to = makeFramebuffer(levels);
     const int step = std::max(1, (tiles.edge() - 4) / 2);
     const bool whole = std::max(frame.x, frame.y) <= tiles.edge();
@@ -217,8 +222,8 @@ Texture DisplayChain::State::localLevels(FrameTiles& tiles, double exposure) {
             const V2i end =
                 whole ? size : V2i(std::min(size.x, x + step), std::min(size.y, y + step));
             const auto range = [](int begin, int past, int n) {
-                return std::pair(std::clamp(2 * begin - 2, 0, n - 1),
-                                 std::clamp(2 * past + 1, 1, n));
+                return std::pair(std::clamp(2 * (begin - kMargin) - 2, 0, n - 1),
+                                 std::clamp(2 * (past - kMargin) + 1, 1, n));
             };
             const auto [left, right] = range(x, end.x, frame.x);
             const auto [top, bottom] = range(y, end.y, frame.y);
@@ -229,6 +234,7 @@ Texture DisplayChain::State::localLevels(FrameTiles& tiles, double exposure) {
         }
     }
     const Program& next = passes.program({"local_level.frag"}, {"PICTURE 0"});
+    setUniform(next, "margin", 0);
     glBindTextureUnit(0, levels.id());
     for (int level = 1; level < kLevels; ++level) {
         setUniform(next, "fine_size", V2i(size.x >> (level - 1), size.y >> (level - 1)));

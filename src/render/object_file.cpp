@@ -39,6 +39,7 @@ ObjectFile readObject(const std::string& path, int threads) {
     if (!file) throw inputError(path, "cannot be read; check its permissions");
     file.read(head, sizeof head);
     const std::string_view begin(head, static_cast<std::size_t>(file.gcount()));
+    if (begin.empty()) throw inputError(path, "is empty; export it again");
     file.clear();
     const std::size_t text = begin.find_first_not_of(" \t\r\n");
     if (begin.starts_with("ply\n") || begin.starts_with("ply\r")) {

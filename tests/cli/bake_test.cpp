@@ -43,6 +43,33 @@ TEST(Bake, IsTheOtherCommandsResults) {
                 readFile(scratch / "d_py.exr").size());
 }
 
+TEST(Bake, ContainersAreTheOtherCommands) {
+    const Scratch scratch;
+    for (const std::string format : {"ktx2", "dds"}) {
+        const std::string folder = "in_" + format;
+        for (const std::vector<std::string>& words :
+             {std::vector<std::string>{"bake", "builtin:sky", "-o", folder, "--size", "16",
+                                       "--levels", "3", "--format", format, "--type", "half"},
+              {"diffuse", "builtin:sky", "-o", "d." + format, "--size", "16", "--type", "half"},
+              {"specular", "builtin:sky", "-o", "s." + format, "--size", "16", "--levels", "3",
+               "--type", "half"}}) {
+            const ToolResult result = runTool(words, scratch.path());
+            ASSERT_EQ(result.exit_code, 0) << result.err;
+        }
+        EXPECT_EQ(readFile(scratch / (folder + "/specular." + format)),
+                  readFile(scratch / ("s." + format)));
+        EXPECT_EQ(readFile(scratch / (folder + "/diffuse." + format)).size(),
+                  readFile(scratch / ("d." + format)).size());
+        const auto manifest = nlohmann::json::parse(readFile(scratch / (folder + "/bake.json")));
+        EXPECT_EQ(manifest.at("diffuse").at("file"), "diffuse." + format);
+        EXPECT_EQ(manifest.at("specular").at(2).at("file"), "specular." + format);
+        EXPECT_EQ(manifest.at("specular").at(2).at("size"), 4);
+    }
+    expectRefused(
+        runTool({"bake", "builtin:furnace", "-o", "c", "--format", "png"}, scratch.path()), 1,
+        "--format");
+}
+
 TEST(Bake, RoughnessMapIsInTheManifest) {
     const Scratch scratch;
     ASSERT_EQ(
@@ -70,6 +97,10 @@ TEST(Bake, AnExistingFolderIsUsedAndAFailedRunLeavesNone) {
                 scratch.path()),
         4, "no/r.json");
     EXPECT_FALSE(std::filesystem::exists(scratch / "c"));
+    for (const char* folder : {"no/c", "/proc/c"}) {
+        expectRefused(runTool({"bake", "builtin:furnace", "-o", folder}, scratch.path()), 4,
+                      "name one in a folder that is there and takes files");
+    }
 }
 
 } // namespace

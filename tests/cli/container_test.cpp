@@ -188,5 +188,19 @@ TEST(Container, RefusesWhatItCannotHold) {
     EXPECT_TRUE(scratch.names().empty());
 }
 
+TEST(Container, IsWrittenButNotRead) {
+    const Scratch scratch;
+    for (const std::string name : {"x.ktx2", "x.dds"}) {
+        const Words write{"convert", "builtin:compass", "--size", "4", "-o", name};
+        ASSERT_EQ(runTool(write, scratch.path()).exit_code, 0);
+        for (const Words& words : {Words{"info", name}, Words{"convert", name, "-o", "y.exr"},
+                                   Words{"tonemap", name, "-o", "y.png"}}) {
+            expectRefused(runTool(words, scratch.path()), 2,
+                          name == "x.dds" ? "x.dds: is a DDS container, which is written but not"
+                                          : "x.ktx2: is a KTX container, which is written but not");
+        }
+    }
+}
+
 } // namespace
 } // namespace ibl

@@ -49,6 +49,35 @@ inline double total(const Image& picture) {
     return sum;
 }
 
+/// One axis of blurredExactly().
+inline std::vector<double> axisBlurredExactly(const std::vector<double>& in, int n, int stride,
+                                              int lines, int line_stride, double deviation) {
+    std::vector<double> out(in.size());
+    const int reach = static_cast<int>(6 * deviation) + 1;
+    for (int line = 0; line < lines; ++line) {
+        for (int i = 0; i < n; ++i) {
+            double sum = 0, weights = 0;
+            for (int k = -reach; k <= reach; ++k) {
+                const double weight = std::exp(-0.5 * k * k / (deviation * deviation));
+                int j = ((i + k) % (2 * n) + 2 * n) % (2 * n);
+                if (j >= n) j = 2 * n - 1 - j;
+                sum += weight * in[static_cast<std::size_t>(line * line_stride + j * stride)];
+                weights += weight;
+            }
+            out[static_cast<std::size_t>(line * line_stride + i * stride)] = sum / weights;
+        }
+    }
+    return out;
+}
+
+/// The oracle of blurs: a Gaussian's weights at every pixel, the picture going on as its mirror
+/// image.
+inline std::vector<double> blurredExactly(const std::vector<double>& picture, int width, int height,
+                                          double deviation) {
+    const auto across = axisBlurredExactly(picture, width, 1, height, width, deviation);
+    return axisBlurredExactly(across, height, width, width, 1, deviation);
+}
+
 /// A scene of wide range: a gradient with a lamp of 1e4 and a dark corner.
 inline Image lampScene(int width, int height) {
     Image picture(width, height);

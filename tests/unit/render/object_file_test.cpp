@@ -142,6 +142,11 @@ TEST_F(ObjectFiles, PlyRefusals) {
     EXPECT_NE(refusal("a.ply", "ply\nformat utf8 1.0\nend_header\n"), "");
 }
 
+TEST_F(ObjectFiles, EmptyOnesAreCalledThat) {
+    for (const char* name : {"a.obj", "a.ply", "a.gltf", "a.glb"})
+        EXPECT_NE(refusal(name, "").find("is empty; export it again"), std::string::npos) << name;
+}
+
 // Three corners, without normals, as base64: (0,0,0) (1,0,0) (0,1,0).
 constexpr const char* kCorners = "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA";
 
