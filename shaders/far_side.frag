@@ -1,4 +1,12 @@
-// The faces that look away from the eye: outward normal, and depth along the view.
+// The faces that look away from the eye, where they are not cut out: outward normal, and depth along
+// the view.
+in vec2 vertex_texcoord;
 out vec4 color;
 
-void main() { color = vec4(meshNormal(), 1.0 / gl_FragCoord.w); }
+void main() {
+#if CUT_OUTS
+    readSurface(vertex_texcoord, dFdx(vertex_texcoord), dFdy(vertex_texcoord));
+    if (surface_alpha < alpha_cutoff) discard;
+#endif
+    color = vec4(meshNormal(), 1.0 / gl_FragCoord.w);
+}

@@ -4,6 +4,7 @@
 #include "cli/session.h"
 
 #include "core/error.h"
+#include "image/finite.h"
 #include "render/shader_program.h"
 
 #include <nlohmann/json.hpp>
@@ -11,6 +12,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -119,7 +121,33 @@ struct Frame {
     std::vector<ExtraChannel> aovs;
 };
 
+/// Pictures that are written, whose memory later frames take over.
+class SparePictures {
+public:
+    Image take() {
+        const std::lock_guard lock(mutex_);
+        if (pictures_.empty()) return {};
+        Image last = std::move(pictures_.back());
+        pictures_.pop_back();
+        return last;
+    }
+
+    /// A frame whose picture comes back when nobody needs it any more.
+    std::shared_ptr<Frame> hold(Frame frame) {
+        return {new Frame(std::move(frame)), [this](Frame* used) {
+                    const std::unique_ptr<Frame> owned(used);
+                    const std::lock_guard lock(mutex_);
+                    pictures_.push_back(std::move(used->picture));
+                }};
+    }
+
+private:
+    std::mutex mutex_;
+    std::vector<Image> pictures_;
+};
+
 std::size_t countNotFinite(const Image& picture) {
+    if (allFinite(picture.pixels)) return 0;
     std::size_t count = 0;
     for (std::size_t i = 0; i < picture.pixels.size(); i += picture.channels) {
         float sum = 0; // of zeros, or NaN
@@ -138,7 +166,7 @@ void noteNotFinite(Session& session, const std::string& shader, std::size_t coun
 }
 
 Frame drawFrame(Session& session, const RenderOptions& options, const FramePlace& place,
-                Drawing& drawing) {
+                Drawing& drawing, Image spare = {}) {
     const bool changed = loadScene(session, options, drawing.frame, place, drawing.loaded);
     const Scene& scene = drawing.loaded.scene;
     if (changed) {
@@ -148,7 +176,9 @@ Frame drawFrame(Session& session, const RenderOptions& options, const FramePlace
         drawing.renderer->change(scene.material, scene.turn, scene.placement);
     }
     const Camera camera = cameraOf(options.camera, place, drawing.frame, drawing.loaded.cameras);
-    Frame frame{session.stage("draw", [&] { return drawing.renderer->render(camera); }), {}};
+    Frame frame{
+        session.stage("draw", [&] { return drawing.renderer->render(camera, std::move(spare)); }),
+        {}};
     drawing.bad_pixels += countNotFinite(frame.picture);
     if (!scene.lights.empty()) reportLights(session, drawing.renderer->lightCounts());
     const bool blurs = options.lens.blurs(place);
@@ -175,10 +205,11 @@ void drawSequence(Session& session, const RenderOptions& options, const WriteOpt
                   Drawing& drawing, PictureDisplay& display) {
     nlohmann::ordered_json frames = nlohmann::ordered_json::array();
     std::vector<std::string> names;
+    SparePictures spares; // outlives the frames in the writer
     FrameWriter writer(session.threads());
     for (FramePlace place{options.frames.first, 0, options.frames.count()};
          place.index < place.count; ++place.number, ++place.index) {
-        const auto frame = std::make_shared<Frame>(drawFrame(session, options, place, drawing));
+        const auto frame = spares.hold(drawFrame(session, options, place, drawing, spares.take()));
         const double exposure = display.show(frame->picture);
         const std::string name = nameOfFrame(options.output.output, options.frames, place);
         names.push_back(name);

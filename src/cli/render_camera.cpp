@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -20,13 +21,12 @@ Camera cameraOfFile(const std::string& wanted, const std::vector<NamedCamera>& c
     std::size_t index = 0;
     const char* end = wanted.data() + wanted.size();
     const auto [last, problem] = std::from_chars(wanted.data(), end, index);
-    if (problem == std::errc() && last == end && index < cameras.size()) {
-        return cameras[index].camera;
-    }
+    const auto numbered = std::ranges::find(cameras, index, &NamedCamera::number);
+    if (problem == std::errc() && last == end && numbered != cameras.end()) return numbered->camera;
     std::string names;
-    for (std::size_t i = 0; i < cameras.size(); ++i) {
-        names += (i ? ", " : "") + std::to_string(i);
-        if (!cameras[i].name.empty()) names += " (" + cameras[i].name + ")";
+    for (const NamedCamera& camera : cameras) {
+        names += (names.empty() ? "" : ", ") + std::to_string(camera.number);
+        if (!camera.name.empty()) names += " (" + camera.name + ")";
     }
     throw Error(ExitCode::usage,
                 "--camera " + wanted + ": the object's file has no such camera; " +

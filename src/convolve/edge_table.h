@@ -1,20 +1,19 @@
 // Integrals of a narrow kernel along straight edges, in a table.
 //
-// In the plane, let M(r) be a kernel's mass within r of its axis, m all of it. About a point at the
-// distance d from a line, whose foot is s = 0,
+// Let M(t) be a kernel's mass within t of its axis, m all of it. In the plane that touches the
+// sphere at the axis great circles are straight and r = tan t; about a point at the distance d from
+// a line, whose foot is s = 0,
 //
-//     A(d, s) = int_0^s M(r) d / r^2 ds',   r^2 = d^2 + s'^2,
+//     A(d, s) = int_0^s M(atan r) d / r^2 ds',   r^2 = d^2 + s'^2,
 //
 // is 2 pi times the kernel's mass over the triangle between the point and the edge: summed around a
-// polygon it is 2 pi times the mass over it. And with
-//
-//     Phi(r) = int_r^oo (m - M(r')) / (2 pi r') dr',   laplacian of Phi = K - m delta,
+// polygon it is 2 pi times the mass over it. And with Phi of near_weights.h
 //
 //     B(d, s) = int_0^s Phi(r) ds'
 //
-// is what flows between half-planes: see near_weights.h. Both vary over the lobe's width near the
-// point and in proportion to the distance farther out, so the table's nodes are evenly spaced in
-// log(1 + d / width) and log(1 + s / width).
+// is what flows between half-planes, where curvature does not count. Both vary over the lobe's
+// width near the point and in proportion to the distance farther out, so the table's nodes are
+// evenly spaced in log(1 + d / width) and log(1 + s / width).
 #pragma once
 
 #include <algorithm>
@@ -26,10 +25,12 @@ namespace ibl {
 
 class EdgeTable {
 public:
-    /// `mass_beyond` is m - M(r), r in radians; 0 from `reach` on. Of lines nearer than `width` the
-    /// integrals vary over `width`; A is asked for up to `extent` >= reach.
-    EdgeTable(const std::function<double(double)>& mass_beyond, double width, double reach,
-              double extent);
+    /// `mass_within` is M(t), `potential` Phi(t), which is 0 from `reach` on, t in radians. Of
+    /// lines nearer than `width` the integrals vary over `width`. Asked for are |d| and |s| up to
+    /// `extent`, and `nodes` to a unit of the logarithms.
+    EdgeTable(const std::function<double(double)>& mass_within,
+              const std::function<double(double)>& potential, double width, double reach,
+              double extent, double nodes);
 
     /// A's difference between `from` and `to` on a line at the signed distance d.
     double angle(double d, double from, double to) const {

@@ -1,38 +1,15 @@
-// Pixels about a texel and the pieces of their edges, in planes that touch the sphere.
+// Pixels about a texel and their edges.
 #pragma once
 
+#include "convolve/arcs.h"
 #include "convolve/near_weights.h"
-#include "convolve/peaks.h"
-#include "panorama/conventions.h"
 
-#include <algorithm>
-#include <cmath>
 #include <vector>
 
 namespace ibl {
 
-/// Edges are cut in pieces this long (radians) at most: a parallel is off its chord by 3e-5 of it.
-inline constexpr double kPiece = 0.015;
-
-/// The plane that touches the sphere at a direction, x to the east, y to the south.
-class Plane {
-public:
-    explicit Plane(const V3d& d) : out_(d) {
-        const double psi = std::atan2(d.y, d.x), theta = std::atan2(std::hypot(d.x, d.y), d.z);
-        east_ = V3d(-std::sin(psi), std::cos(psi), 0);
-        south_ = polarDirection(theta + 0.5 * kPi, psi);
-    }
-    V2d operator()(const V3d& d) const {
-        return V2d(d.dot(east_), d.dot(south_)) / std::max(d.dot(out_), 1e-3);
-    }
-
-private:
-    V3d out_, east_, south_;
-};
-
-inline double cross(const V2d& a, const V2d& b) {
-    return a.x * b.y - a.y * b.x;
-}
+/// Curves are cut in pieces of at most this many radians, and of this much of a turn.
+inline constexpr double kLongest = 0.06;
 
 /// Pixels about a texel.
 struct Block {
@@ -40,15 +17,14 @@ struct Block {
     NearWeights& weights;
     std::vector<char> near; ///< [rows][columns]: by edges
 
-    double theta(int row) const { return kPi * row / field.height; }
-    double psi(int column) const { return 2 * kPi * column / field.width; }
     /// Index of a pixel counted from the first, or -1 outside.
     int at(int row, int column) const {
-        if (row < 0 || row >= weights.rows || column < 0) return -1;
-        if (column >= weights.columns) {
-            if (weights.columns < field.width) return -1;
-            column -= weights.columns; // all the way around
+        if (row < 0 || row >= weights.rows) return -1;
+        if (weights.columns == field.width) { // all the way around
+            column %= field.width;
+            if (column < 0) column += field.width;
         }
+        if (column < 0 || column >= weights.columns) return -1;
         return row * weights.columns + column;
     }
     bool isNear(int pixel) const { return pixel >= 0 && near[static_cast<std::size_t>(pixel)]; }
@@ -57,17 +33,14 @@ struct Block {
     }
 };
 
-/// A piece of a parallel, westwards, or of a meridian, southwards, in a plane: from a to b the
-/// pixel in the north or west lies on the left, x going to y.
-struct EdgePiece {
+/// A piece of a parallel, eastwards, or of a meridian, northwards: the pixel in the north or west
+/// lies on its left as seen from outside.
+struct PixelEdge {
     int before, after; ///< the pixels on the left and on the right, -1 outside the block
-    bool parallel;
-    double line; ///< theta or psi
-    V2d a, along;
-    double length;
+    Arc arc;
 };
 
-/// The pieces of the near pixels' edges that come within `radius` of the plane's origin.
-std::vector<EdgePiece> edgesAbout(const Block& block, const V3d& origin, double radius);
+/// All edges of the near pixels.
+std::vector<PixelEdge> edgesOfNear(const Block& block);
 
 } // namespace ibl

@@ -5,6 +5,7 @@
 #include "panorama/resample.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numeric>
 
@@ -92,11 +93,11 @@ V3d weightedSum(const Image& probe, const NearWeights& weights, const Move& move
 } // namespace
 
 Image nearMap(const Panorama& probe, const NearField& field, const PrefilterRequest& request,
-              const Footprint& footprint, int threads) {
+              const Footprint& footprint, int threads, Progress* progress) {
     if (isCubeFamily(request.layout) && request.layout != Layout::faces) {
         PrefilterRequest faces = request;
         faces.layout = Layout::faces;
-        return resample({Layout::faces, nearMap(probe, field, faces, footprint, threads)},
+        return resample({Layout::faces, nearMap(probe, field, faces, footprint, threads, progress)},
                         request.layout, request.size, threads)
             .image;
     }
@@ -124,7 +125,9 @@ Image nearMap(const Panorama& probe, const NearField& field, const PrefilterRequ
     Image result(size.x, size.y);
     std::ranges::fill(result.pixels, 0.0f);
     constexpr std::size_t kAtOnce = 16;
-    parallelForRuns(first.size() - 1, kAtOnce, threads, [&](std::size_t begin, std::size_t end) {
+    std::atomic<std::size_t> finished = 0;
+    const std::size_t groups = first.size() - 1, rows = static_cast<std::size_t>(map.height);
+    parallelForRuns(groups, kAtOnce, threads, [&](std::size_t begin, std::size_t end) {
         for (std::size_t group = begin; group < end; ++group) {
             const int key = texels[first[group]].key;
             const NearWeights weights =
@@ -136,6 +139,9 @@ Image nearMap(const Panorama& probe, const NearField& field, const PrefilterRequ
                 for (int c = 0; c < 3; ++c)
                     result.at(t.x, t.y)[c] = static_cast<float>(value[c]);
             }
+            const std::size_t at = finished++;
+            for (std::size_t row = at * rows / groups; row < (at + 1) * rows / groups; ++row)
+                if (progress) progress->step();
         }
     });
     return result;

@@ -2,176 +2,105 @@
 
 #include "convolve/gauss.h"
 #include "convolve/near_edges.h"
+#include "convolve/near_flow.h"
 #include "convolve/peaks.h"
 #include "panorama/conventions.h"
 #include "panorama/layouts.h"
+#include "panorama/square_maps.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace ibl {
 namespace {
 
-/// Pixels this many times the texel's and the pixel's extent away are summed by points. A 1024x512
-/// probe with a sun, GGX of roughness 0.05 into faces of 256, against 8 times: 2 leaves a relative
-/// RMSE of 2.4e-4, 4 leaves 2.9e-6 for half as much time again.
-constexpr double kFar = 4;
-/// Gauss points to a piece of a texel's edge, and the piece's length over the distance of the
-/// nearest end of a pixel's edge.
-constexpr int kFlowPoints = 6;
-constexpr double kFlowPiece = 1.5;
+/// Footprints shrunk below this of the texel's extent are taken at points.
+constexpr double kLeastOutline = 0.25;
 
-double squaredSineAtDistance(double r2) { // of half the angle whose tangent is r
-    return 0.5 * r2 / (1 + r2 + std::sqrt(1 + r2));
-}
-
-/// Adds share * (the kernel's mass over each near pixel as seen from a direction).
-void addMasses(const Block& block, const Plane& plane, const std::vector<EdgePiece>& edges,
-               double theta, double psi, double share) {
-    const NearField& field = block.field;
-    const double mass = field.kernel.mass;
-    // Summed around a pixel, dchi is 2 pi where the direction lies in it and else 0; without m
-    // dchi, edges beyond the reach need not be summed.
-    int column = static_cast<int>(std::floor(psi / block.psi(1))) - block.weights.column;
-    column = ((column % field.width) + field.width) % field.width;
-    const int row = std::min(static_cast<int>(theta / block.theta(1)), field.height - 1);
-    block.add(block.at(row - block.weights.row, column), share * mass);
-    const V2d place = plane(polarDirection(theta, psi));
-    for (const EdgePiece& edge : edges) {
-        const V2d a = edge.a - place;
-        // Of a parallel's chord the direction may be on the wrong side, by next to nothing.
-        const double distance = std::max(std::abs(cross(a, edge.along)), 1e-15);
-        const double from = a.dot(edge.along), to = from + edge.length;
-        if (distance > field.kernel.reach || from > field.kernel.reach || to < -field.kernel.reach)
-            continue;
-        const bool left =
-            edge.parallel ? theta < edge.line : std::remainder(psi - edge.line, 2 * kPi) < 0;
-        const double d = left ? distance : -distance;
-        const double angle =
-            field.table.angle(d, from, to) - mass * (std::atan(to / d) - std::atan(from / d));
-        block.add(edge.before, share * angle / (2 * kPi));
-        block.add(edge.after, -share * angle / (2 * kPi));
-    }
-}
-
-/// int over the edge that goes from e0 along e of B over the edge f.
-double flowAcross(const NearField& field, const V2d& e0, const V2d& e, double length,
-                  const EdgePiece& f) {
-    const NearKernel& kernel = field.kernel;
-    const V2d between = f.a - e0, normal(-f.along.y, f.along.x);
-    // At the place x on e: distance d from f's line, f's ends at s_a and s_b along it.
-    const double d0 = -between.dot(normal), slope = e.dot(normal);
-    const double s_a0 = between.dot(f.along), drift = -e.dot(f.along);
-    // Where the integrand changes: beside f's ends, and where e crosses f.
-    struct Site {
-        double place, distance;
-    };
-    const V2d to_end = between + f.along * f.length;
-    std::array<Site, 3> sites{Site{between.dot(e), std::abs(cross(e, between))},
-                              Site{to_end.dot(e), std::abs(cross(e, to_end))}, Site{-1, 1e3}};
-    if (std::abs(slope) > 1e-9) {
-        const double place = -d0 / slope, s = s_a0 + place * drift;
-        if (s <= 0 && s + f.length >= 0) sites[2] = {place, 0};
-    }
-    const auto nearest = [&](double place) {
-        double least = 1e3;
-        for (const Site& site : sites)
-            least = std::min(least, std::max(std::abs(place - site.place), site.distance));
-        return least;
-    };
-    const GaussRule &many = gaussRule(kFlowPoints), &few = gaussRule(kFlowPoints - 2);
-    double sum = 0;
-    // Pieces not longer than the distance of what changes from their middle; such places part them.
-    std::array<double, 5> cuts{0, length, length, length, length};
-    for (std::size_t i = 0; i < 3; ++i)
-        if (sites[i].place > 0 && sites[i].place < length && sites[i].distance < length)
-            cuts[i + 1] = sites[i].place;
-    std::ranges::sort(cuts);
-    for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
-        double from = cuts[i];
-        while (from < cuts[i + 1]) {
-            double to = cuts[i + 1];
-            double room = kernel.width + nearest(0.5 * (from + to));
-            while (to - from > kFlowPiece * room) {
-                to = from + 0.5 * (to - from);
-                room = kernel.width + nearest(0.5 * (from + to));
-            }
-            const double middle = 0.5 * (from + to), half = 0.5 * (to - from);
-            const GaussRule& rule = to - from > 0.5 * room ? many : few;
-            for (std::size_t k = 0; k < rule.nodes.size(); ++k) {
-                const double x = middle + half * rule.nodes[k], d = d0 + x * slope;
-                const double s = s_a0 + x * drift;
-                if (std::abs(d) < kernel.reach)
-                    sum += half * rule.weights[k] * field.table.flow(d, s, s + f.length);
-            }
-            from = to;
-        }
-    }
-    return sum;
-}
-
-/// Adds share * (what flows into each near pixel across the texel's edge from e0 to e1, in the
-/// edges' plane); `out` is the normal's sign.
-void addFlow(const Block& block, const std::vector<EdgePiece>& edges, const V2d& e0, const V2d& e1,
-             double out, double share) {
-    const double length = (e1 - e0).length(), reach = block.field.kernel.reach;
-    if (length == 0) return;
-    const V2d e = (e1 - e0) / length, outward = V2d(-e.y, e.x) * out;
-    for (const EdgePiece& f : edges) {
-        const double facing = outward.dot(V2d(f.along.y, -f.along.x)); // out of `before`
-        const V2d a = f.a - e0;
-        if (std::abs(facing) < 1e-12 || std::abs(a.dot(e)) > reach + length + f.length ||
-            std::abs(a.dot(outward)) > reach + f.length)
-            continue;
-        const double flow = share * facing * flowAcross(block.field, e0, e, length, f);
-        block.add(f.before, -flow);
-        block.add(f.after, flow);
-    }
-}
-
-/// The texel's outline as polar directions, `pieces` to a side.
-std::vector<V3d> outlineOf(const MapExtent& map, int x, int y, double scale, int pieces) {
-    std::vector<V3d> outline;
+/// The outline of the texel shrunk to `scale`.
+std::vector<Arc> outlineOf(const MapExtent& map, int x, int y, double scale) {
+    std::vector<Arc> outline;
     for (int side = 0; side < 4; ++side) {
+        const auto place = [&](double at) {
+            const V2d offset[4] = {{at, -0.5}, {0.5, at}, {-at, 0.5}, {-0.5, -at}};
+            return texelPlace(map, x, y, offset[side] * scale);
+        };
+        V3d from = place(-0.5);
+        const double length = Arc{from, place(0), place(0.5)}.length();
+        // Sides of square maps' texels may have a fold within them.
+        const int least = isSquareMap(map.layout) ? 4 : 1;
+        const int pieces = std::max(least, static_cast<int>(std::ceil(length / kLongest)));
         for (int k = 0; k < pieces; ++k) {
-            const double at = static_cast<double>(k) / pieces - 0.5;
-            const V2d place[4] = {{at, -0.5}, {0.5, at}, {-at, 0.5}, {-0.5, -at}};
-            outline.push_back(texelPlace(map, x, y, place[side] * scale));
+            const V3d to = place(static_cast<double>(k + 1) / pieces - 0.5);
+            outline.push_back({from, place((k + 0.5) / pieces - 0.5), to});
+            from = to;
         }
     }
     return outline;
 }
 
-/// Adds what flows across a texel's outline, over its solid angle. One plane does for a small one.
-void addOutline(const Block& block, const std::vector<V3d>& outline, const V3d& centre,
-                bool one_plane, double solid_angle) {
-    const double reach = block.field.kernel.reach;
-    std::vector<EdgePiece> edges;
-    if (one_plane) {
-        const double extent = (outline[0] - centre).length();
-        edges = edgesAbout(block, centre, reach + 2 * extent);
+/// Of the triangle, positive where it runs counter-clockwise as seen from outside (Van Oosterom and
+/// Strackee 1983).
+double solidAngle(const V3d& a, const V3d& b, const V3d& c) {
+    return 2 * std::atan2(a.dot(b.cross(c)), 1 + a.dot(b) + b.dot(c) + c.dot(a));
+}
+
+double solidAngle(const std::vector<Arc>& outline, const V3d& centre) {
+    double sum = 0;
+    for (const Arc& e : outline)
+        sum += solidAngle(centre, e.a, e.m) + solidAngle(centre, e.m, e.b);
+    return sum;
+}
+
+std::vector<TexelPoint> pointsOf(const MapExtent& map, int x, int y, const Footprint& footprint) {
+    const RowPoints row = texelPoints(map, x, y, footprint);
+    std::vector<TexelPoint> points;
+    for (std::size_t i = 0; i < row.u.size(); ++i)
+        points.push_back({polarDirection(kPi * row.v[i], 2 * kPi * row.u[i]), row.share[i]});
+    return points;
+}
+
+/// Adds what a texel gets of its near pixels.
+void addTexel(const Block& block, const Texel& texel, Potential potential) {
+    for (const PixelEdge& f : edgesOfNear(block)) {
+        const double flow = flowAcross(block.field, potential, texel, f.arc);
+        block.add(f.before, flow);
+        block.add(f.after, -flow);
     }
-    for (std::size_t i = 0; i < outline.size(); ++i) {
-        const V3d &e0 = outline[i], &e1 = outline[(i + 1) % outline.size()];
-        const V3d middle = (e0 + e1).normalized();
-        if (!one_plane) edges = edgesAbout(block, middle, reach + 0.5 * (e1 - e0).length());
-        const Plane plane(one_plane ? centre : middle);
-        // East, south and out are a left-handed frame.
-        const double out = e0.cross(e1).dot(centre) > 0 ? 1 : -1;
-        addFlow(block, edges, plane(e0), plane(e1), out, 1 / solid_angle);
+}
+
+/// The same by points.
+void addPoints(const Block& block, const std::vector<TexelPoint>& points) {
+    for (const PixelEdge& f : edgesOfNear(block)) {
+        double flow = 0;
+        for (const TexelPoint& x : points)
+            flow += x.share * flowAcross(block.field, x.at, f.arc);
+        block.add(f.before, flow);
+        block.add(f.after, -flow);
+    }
+}
+
+/// Adds to every near pixel its part of a mass spread evenly over the sphere.
+void addEven(const Block& block, double mass) {
+    const NearWeights& w = block.weights;
+    for (int j = 0; j < w.rows; ++j) {
+        const double even =
+            mass / (4 * kPi) *
+            latlongPixelSolidAngle(block.field.width, block.field.height, w.row + j);
+        for (int i = 0; i < w.columns; ++i)
+            block.add(j * w.columns + i, even);
     }
 }
 
 /// The rows and columns within `reach` of the outline.
-void setBlock(const NearField& field, const std::vector<V3d>& outline, const V3d& centre,
+void setBlock(const NearField& field, const std::vector<Arc>& outline, const V3d& centre,
               NearWeights& weights) {
     const double reach = field.kernel.reach;
     const double own = std::atan2(centre.y, centre.x);
     double top = kPi, bottom = 0, west = 0, east = 0, turned = 0, last = 0;
     bool first = true;
     for (std::size_t i = 0; i <= outline.size(); ++i) {
-        const V3d& d = outline[i % outline.size()];
+        const V3d& d = outline[i % outline.size()].a;
         const double theta = std::atan2(std::hypot(d.x, d.y), d.z);
         double psi = std::atan2(d.y, d.x) - own;
         psi -= 2 * kPi * std::round(psi / (2 * kPi));
@@ -200,55 +129,65 @@ void setBlock(const NearField& field, const std::vector<V3d>& outline, const V3d
     weights.weight.assign(static_cast<std::size_t>(weights.rows) * weights.columns, 0.0);
 }
 
-/// Half axes of the parallelogram that a quadrangle about the plane's origin is.
-struct HalfAxes {
-    V2d a, b;
+/// Half sides of the parallelogram that a quadrangle is.
+struct HalfSides {
+    V3d a, b;
 };
 
 /// Marks the pixels that are near and sets the weights of the others, by a rule of four points that
-/// has the second moments of their displacements from the texel.
-void addFar(Block& block, const V3d& centre, const HalfAxes& texel, double extent) {
+/// has the second moments of their displacements from the texel, of whose centre no part of it is
+/// farther than `radius`.
+void addFar(Block& block, const V3d& centre, const HalfSides& texel, double radius) {
     const NearField& field = block.field;
     NearWeights& w = block.weights;
-    const Plane plane(centre);
     block.near.assign(w.weight.size(), 0);
+    std::vector<V2d> azimuth;
+    for (int i = 0; i < w.columns; ++i) {
+        const double psi = 2 * kPi / field.width * (w.column + i + 0.5);
+        azimuth.emplace_back(std::cos(psi), std::sin(psi));
+    }
+    const double half_height = 0.5 * kPi / field.height;
     for (int j = 0; j < w.rows; ++j) {
-        const double theta = 0.5 * (block.theta(w.row + j) + block.theta(w.row + j + 1));
-        const double sin = std::sin(theta), half_height = 0.5 * block.theta(1),
-                     half_width = 0.5 * block.psi(1) * sin;
+        const double theta = 2 * half_height * (w.row + j + 0.5);
+        const double sin = std::sin(theta), cos = std::cos(theta);
+        const double half_width = kPi / field.width * sin;
         const double pixel = 2 * std::max(half_height, half_width);
-        const double far = kFar * std::hypot(extent, pixel);
+        const double far = field.rules.far * std::hypot(1.4 * radius, pixel);
+        const double reach = field.kernel.reach + radius + pixel;
         const double area = latlongPixelSolidAngle(field.width, field.height, w.row + j);
         for (int i = 0; i < w.columns; ++i) {
             const std::size_t at = static_cast<std::size_t>(j * w.columns + i);
-            const double psi = block.psi(1) * (w.column + i + 0.5);
-            const V3d d = polarDirection(theta, psi);
-            const double chord = (d - centre).length();
-            if (chord < far) {
+            const V2d u = azimuth[static_cast<std::size_t>(i)];
+            const V3d between = V3d(sin * u.x, sin * u.y, cos) - centre;
+            const double chord2 = between.length2();
+            if (chord2 < far * far) {
                 block.near[at] = 1;
                 continue;
             }
-            if (chord > field.kernel.reach + extent + pixel) continue;
-            const V2d p = plane(d);
-            const V2d south = plane(polarDirection(theta + half_height, psi)) - p;
-            const V2d east = plane(polarDirection(theta, psi + 0.5 * block.psi(1))) - p;
-            // Covariance of both, by its Cholesky factor.
-            const auto square = [](double x) { return x * x; };
-            const double xx = (square(texel.a.x) + square(texel.b.x) + square(south.x) +
-                               square(east.x)) /
-                              3,
-                         xy = (texel.a.x * texel.a.y + texel.b.x * texel.b.y + south.x * south.y +
-                               east.x * east.y) /
-                              3,
-                         yy = (square(texel.a.y) + square(texel.b.y) + square(south.y) +
-                               square(east.y)) /
-                              3;
+            if (chord2 > reach * reach) continue;
+            // Along the chord and across it, in the plane between both tangent planes.
+            const double chord = std::sqrt(chord2);
+            const V3d along = between * (1 / chord);
+            const V3d across = V3d(sin * u.x, sin * u.y, cos).cross(centre).normalized();
+            const V3d south = V3d(cos * u.x, cos * u.y, -sin) * half_height;
+            const V3d east = V3d(-u.y, u.x, 0) * half_width;
+            double xx = 0, xy = 0, yy = 0;
+            for (const V3d& side : {south, east, texel.a, texel.b}) {
+                const double x = side.dot(along), y = side.dot(across);
+                xx += x * x / 3;
+                xy += x * y / 3;
+                yy += y * y / 3;
+            }
+            // Half sides leave the sphere: their ends lie deeper.
+            const double deeper =
+                (south.length2() + east.length2() + texel.a.length2() + texel.b.length2()) / 6 *
+                0.5 * chord;
+            // The covariance's Cholesky factor.
             const double l = std::sqrt(xx), m = xy / l, n = std::sqrt(std::max(0.0, yy - m * m));
             double sum = 0;
             for (const double s : {-1.0, 1.0})
                 for (const double t : {-1.0, 1.0})
-                    sum += field.kernel.value(
-                        squaredSineAtDistance((p + V2d(s * l, s * m + t * n)).length2()));
+                    sum += field.value(V2d(chord - deeper + s * l, s * m + t * n).length2());
             w.weight[at] = 0.25 * area * sum;
         }
     }
@@ -256,46 +195,95 @@ void addFar(Block& block, const V3d& centre, const HalfAxes& texel, double exten
 
 } // namespace
 
-NearField makeNearField(const NearKernel& kernel, int probe_width, int probe_height) {
-    const auto mass_beyond = [&](double t) {
-        const double s = std::sin(0.5 * t);
-        return kernel.massBeyond(s * s);
+NearField makeNearField(const NearKernel& kernel, const NearRules& rules, int probe_width,
+                        int probe_height) {
+    const double m = kernel.mass, reach = kernel.reach, least = 1e-4 * kernel.width;
+    const auto chord2 = [](double t) { return std::pow(2 * std::sin(0.5 * t), 2); };
+    const auto beyond = [&](double x) { // of the squared chord
+        return x < chord2(reach) ? kernel.massBeyond(0.25 * x) : 0.0;
     };
-    return {kernel, EdgeTable(mass_beyond, kernel.width, kernel.reach, kernel.reach + 4 * kPiece),
-            probe_width, probe_height};
+    // With x = 4 sin^2(t/2), dt / sin t = dx / (2 x (1 - x / 4)). Phi from the outside in.
+    const GaussRule& rule = gaussRule(8);
+    const auto rise = [&](double from, double to) {
+        const double low = std::log(from), half = 0.5 * (std::log(to) - low);
+        double sum = 0;
+        for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
+            const double x = std::exp(low + half * (1 + rule.nodes[i]));
+            sum += rule.weights[i] * beyond(x) / (1 - 0.25 * x);
+        }
+        return half * sum / (4 * kPi);
+    };
+    constexpr double kStep = 0.1; // of log x
+    const double outermost = std::min(chord2(reach), 3.999);
+    std::vector<double> steps{0.0};
+    for (double x = outermost; x > least * least; x *= std::exp(-kStep))
+        steps.push_back(steps.back() + rise(x * std::exp(-kStep), x));
+    const auto phi = [&](double x) {
+        if (x >= outermost) return 0.0;
+        const double at = std::log(outermost / x) / kStep;
+        const std::size_t i = std::min(static_cast<std::size_t>(at), steps.size() - 1);
+        const double node = outermost * std::exp(-kStep * static_cast<double>(i));
+        // Within the innermost, m log.
+        return steps[i] +
+               (i + 1 < steps.size() ? rise(x, node) : m * std::log(node / x) / (4 * kPi));
+    };
+    const auto value = [&](double x) { return kernel.value(0.25 * x); };
+    const auto psi = [&](double x) { return phi(x) + m / (4 * kPi) * std::log(0.25 * x); };
+    const auto swirl = [&](double x) {
+        return (m - beyond(x) - 0.25 * m * x) / (2 * kPi * x * std::max(1e-9, 1 - 0.25 * x));
+    };
+    const auto outer_swirl = [&](double x) {
+        return -beyond(x) / (2 * kPi * x * std::max(1e-9, 1 - 0.25 * x));
+    };
+    using enum RadialTable::Beyond;
+    const double x0 = least * least, x1 = chord2(reach);
+    const auto within = [&](double t) { return m - beyond(chord2(t)); };
+    const auto at_angle = [&](double t) { return phi(t * t); };
+    return {kernel,
+            rules,
+            RadialTable(value, x0, 4, constant),
+            RadialTable(phi, x0, x1, zero),
+            RadialTable(psi, x0, 4, constant),
+            RadialTable(swirl, x0, 4, constant),
+            RadialTable(outer_swirl, x0, x1, zero),
+            EdgeTable(within, at_angle, kernel.width, reach, 6 * rules.flat, rules.nodes),
+            probe_width,
+            probe_height};
 }
 
 NearWeights nearWeights(const NearField& field, const MapExtent& map, int x, int y,
                         const Footprint& footprint) {
     NearWeights weights;
-    const double extent = footprint.scale * map.texel;
-    const bool flows = footprint.scale == 1;
-    const int pieces = flows ? std::max(1, static_cast<int>(std::ceil(extent / (2 * kPiece)))) : 1;
+    const double scale = footprint.scale;
     const V3d centre = texelPlace(map, x, y, V2d(0));
-    const std::vector<V3d> outline = outlineOf(map, x, y, footprint.scale, pieces);
+    const std::vector<Arc> outline = outlineOf(map, x, y, scale);
+    double radius = 0;
+    for (const Arc& e : outline)
+        radius = std::max({radius, (e.a - centre).length(), (e.m - centre).length()});
     setBlock(field, outline, centre, weights);
     Block block{field, weights, {}};
-    const double solid_angle = texelSolidAngle(map.layout, map.width, map.height, x, y);
-    const Plane plane(centre);
-    const auto halfAxis = [&](V2d offset) { return plane(texelPlace(map, x, y, offset)); };
-    addFar(block, centre,
-           {halfAxis(V2d(0.5 * footprint.scale, 0)), halfAxis(V2d(0, 0.5 * footprint.scale))},
-           extent);
-    if (flows) {
-        addOutline(block, outline, centre, pieces == 1, solid_angle);
+    const auto halfSide = [&](V2d offset) { return texelPlace(map, x, y, offset) - centre; };
+    addFar(block, centre, {halfSide(V2d(0.5 * scale, 0)), halfSide(V2d(0, 0.5 * scale))}, radius);
+    if (scale >= kLeastOutline) {
+        const double own = solidAngle(outline, centre);
+        // The area filter's texels are exact.
+        const double whole = texelSolidAngle(map.layout, map.width, map.height, x, y);
+        const Texel texel{centre,
+                          radius,
+                          outline,
+                          scale < 1 ? own : std::copysign(whole, own),
+                          pointsOf(map, x, y, {scale, 2}),
+                          pointsOf(map, x, y, {scale, 3})};
+        addTexel(block, texel, scale < 1 ? Potential::withArea : Potential::withoutArea);
     } else {
-        const RowPoints points = texelPoints(map, x, y, footprint);
-        const double radius = field.kernel.reach + extent;
-        const std::vector<EdgePiece> edges = edgesAbout(block, centre, radius);
-        for (std::size_t i = 0; i < points.u.size(); ++i)
-            addMasses(block, plane, edges, kPi * points.v[i], 2 * kPi * points.u[i],
-                      points.share[i]);
+        addPoints(block, pointsOf(map, x, y, footprint));
     }
+    if (scale < 1) addEven(block, field.kernel.mass);
     double sum = 0;
     for (const double w : weights.weight)
         sum += w;
     // Between what is near and what is far the sums are of two kinds.
-    if (flows) {
+    if (scale == 1) {
         weights.area = field.kernel.mass - sum;
     } else {
         for (double& w : weights.weight)

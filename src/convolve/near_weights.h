@@ -1,27 +1,29 @@
 // A texel's value as a sum over pixels, for kernels that are not smooth over either.
 //
 // What is wanted of a texel T and every pixel P near it is G(T, P) = int_T int_P K. Where both are
-// small beside their distance, K at a few points does. Nearer:
+// small beside their distance, K at a few points does. Nearer, with a potential of K Gauss's
+// theorem in both T and P leaves their outlines alone (Neumann's formula for inductances):
 //
-// - For a T that is not much larger than the kernel is wide, the kernel's mass over P is smooth
-//   enough in T for Gauss points; about each of them the mass is a sum over P's edges (A of
-//   edge_table.h).
-// - For larger ones, with K = m delta + laplacian of Phi and Gauss's theorem in both T and P,
+//     Phi' = -(m - M) / (2 pi sin t),         laplacian of Phi = K - m delta,
+//     G(T, P) = m |T n P| - oint_dT oint_dP Phi dx . dy;
+//     Psi' = (M - m sin^2(t/2)) / (2 pi sin t),   laplacian of Psi = K - m / (4 pi),
+//     G(T, P) = m |T| |P| / (4 pi) - oint_dT oint_dP Psi dx . dy,
 //
-//       G(T, P) = m |T n P| - sum over edges e of T and f of P of (n_e . n_f) int_e int_f Phi,
+// M(t) the kernel's mass within t, m all of it. It holds on the sphere as it stands. Phi ends with
+// the kernel, and of kernels narrower than the texel only what is beside both outlines counts: its
+// first term summed over pixels is the area filter's. Psi is smooth over the kernel's width, so it
+// serves the shrunk footprints that wider kernels have. For very small footprints the kernel's mass
+// over P is taken at points x,
 //
-//   n the outward normals: radiance flows from texel to texel across e, as much as the kernel
-//   reaches over it, and f is where the radiance changes. The first term summed over pixels is the
-//   area filter's. The inner integral is B of edge_table.h, the outer one Gauss points on e that
-//   stand the closer the nearer f's ends are; what Phi is integrated over there is the kernel's
-//   width, so however narrow it is the points are few.
+//     G(x, P) = m |P| / (4 pi) + oint_dP (M - m sin^2(t/2)) dchi / (2 pi).
 //
-// Both take great circles as straight, in the plane that touches the sphere at the point or at the
-// middle of e.
+// Pieces of outlines that are short beside what lies between them are met by Gauss points, others
+// are halved; what touches is met in a plane (edge_table.h).
 #pragma once
 
 #include "convolve/edge_table.h"
 #include "convolve/narrow.h"
+#include "convolve/radial_table.h"
 #include "convolve/texels.h"
 #include "image/image.h"
 
@@ -29,15 +31,33 @@
 
 namespace ibl {
 
-/// A kernel with what its weights are made from.
+/// Phi or Psi.
+enum class Potential { withoutArea, withArea };
+
+/// How exactly weights are made.
+struct NearRules {
+    double far;   ///< pixels this many times the texel's and the pixel's extent away: by points
+    double two;   ///< pieces this many times their length apart: by two points each,
+    double three; ///< or by three
+    double flat;  ///< longest piece that counts as straight, radians,
+    double bend;  ///< if its middle is not farther from its chord than this of its length
+    double nodes; ///< of the table, to a unit of its logarithms
+};
+
+/// A kernel with what its weights are made from. Tables are of the squared chord.
 struct NearField {
     NearKernel kernel;
+    NearRules rules;
+    RadialTable value, phi, psi;
+    RadialTable swirl;       ///< (M - m sin^2(t/2)) / (2 pi sin^2 t)
+    RadialTable outer_swirl; ///< (M - m) / (2 pi sin^2 t)
     EdgeTable table;
     int width; ///< of the probe
     int height;
 };
 
-NearField makeNearField(const NearKernel& kernel, int probe_width, int probe_height);
+NearField makeNearField(const NearKernel& kernel, const NearRules& rules, int probe_width,
+                        int probe_height);
 
 /// A texel is area * (its area-filtered value) + sum of weight * pixel.
 struct NearWeights {

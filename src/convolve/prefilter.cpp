@@ -24,11 +24,26 @@
 namespace ibl {
 namespace {
 
-/// Relative RMSE that the near kernel's weights leave: measured, not derived, against the contour
-/// integrals of tests/support/contour_oracle.h. GGX of 0.001 to 0.08 into 64- and 128-texel faces
-/// of a courtyard (256x128) and a canal (512x256): up to 2.9e-6; the brightest texels beside a sun
-/// of 29856 (512x256, 0.05, 64 texels): 2.0e-5.
-constexpr double kNearError = 2e-5;
+/// How exactly the near kernel's weights are made, and the relative RMSE that they leave: measured,
+/// not derived, against the contour integrals of tests/support/contour_oracle.h, with a margin
+/// (tests/bench/convolve/narrow_bench.cpp).
+struct NearRow {
+    NearRules rules;
+    double error;
+};
+
+constexpr NearRow kNearRows[] = {
+    {{3, 2, 0.75, 8e-3, 1e-3, 10}, 5e-5},
+    {{4, 6, 2, 1e-3, 1e-4, 20}, 4e-6},
+    {{6, 12, 4, 5e-4, 1e-4, 30}, 1e-6},
+};
+
+const NearRow& nearRow(double max_error) {
+    for (const NearRow& row : kNearRows)
+        if (row.error <= 0.6 * max_error) return row;
+    return kNearRows[std::size(kNearRows) - 1];
+}
+
 constexpr double kNoThreshold = std::numeric_limits<double>::infinity();
 
 class Stopwatch {
@@ -208,19 +223,35 @@ PrefilterResult areaFiltered(const Engine& engine, const PrefilterRequest& reque
     return result;
 }
 
+/// The sum over all pixels: by points in the texel, or where the lobe is too narrow for them by the
+/// outlines of texel and pixels.
 PrefilterResult directSum(const Engine& engine, const PrefilterRequest& request, int threads,
                           Progress& progress) {
     const Stopwatch watch;
     PrefilterResult result = emptyResult(request);
-    const DirectSum direct = makeDirectSum(request.lobe, engine.probe.image, engine.probe.scale);
+    const Image& probe = engine.probe.image;
     const Footprint footprint = footprintOf(request.lobe, texelAngle(request), kAnyDegree);
-    Ingredients parts;
-    parts.direct = &direct;
-    MapNorm norm;
-    fillMap(engine.probe, request, footprint, parts, threads, result.map.image, norm, &progress);
+    if (footprint.scale > 0) {
+        const NearRow& row = kNearRows[std::size(kNearRows) - 1];
+        const NearKernel whole(request.lobe, 0, 0);
+        result.map.image = nearMap(engine.probe.panorama,
+                                   makeNearField(whole, row.rules, probe.width, probe.height),
+                                   request, footprint, threads, &progress);
+        if (!engine.probe.negative)
+            for (float& p : result.map.image.pixels)
+                p = std::max(0.0f, p);
+        result.error_bound = result.error_estimate = row.error;
+    } else {
+        const DirectSum direct = makeDirectSum(request.lobe, probe, engine.probe.scale);
+        Ingredients parts;
+        parts.direct = &direct;
+        MapNorm norm;
+        fillMap(engine.probe, request, footprint, parts, threads, result.map.image, norm,
+                &progress);
+        result.error_bound = result.error_estimate = kFloatRounding;
+        result.worst_bound = kFloatRounding;
+    }
     result.seconds_spatial = watch.seconds();
-    result.error_bound = result.error_estimate = kFloatRounding;
-    result.worst_bound = kFloatRounding;
     return result;
 }
 
@@ -266,7 +297,7 @@ PrefilterResult byHarmonics(const Engine& engine, const PrefilterRequest& reques
 }
 
 PrefilterResult inTwoParts(const Engine& engine, const PrefilterRequest& request,
-                           const LobePlan& lobe, int threads) {
+                           const LobePlan& lobe, double max_error, int threads) {
     const Stopwatch watch;
     PrefilterResult result = emptyResult(request);
     const Image& probe = engine.probe.image;
@@ -282,9 +313,9 @@ PrefilterResult inTwoParts(const Engine& engine, const PrefilterRequest& request
     // Beside a sun pixels' masses need one point more than footprintOf's, which are for lobes.
     Footprint near_footprint = footprintOf(request.lobe, texel, kAnyDegree);
     if (near_footprint.scale > 0) ++near_footprint.samples;
-    const Image near =
-        nearMap(engine.probe.panorama, makeNearField(split.near, probe.width, probe.height),
-                request, near_footprint, threads);
+    const NearRow& row = nearRow(max_error);
+    const NearField near_field = makeNearField(split.near, row.rules, probe.width, probe.height);
+    const Image near = nearMap(engine.probe.panorama, near_field, request, near_footprint, threads);
     parts.near = &near;
     MapNorm norm;
     fillMap(engine.probe, request, footprintOf(request.lobe, texel, split.degree), parts, threads,
@@ -298,8 +329,8 @@ PrefilterResult inTwoParts(const Engine& engine, const PrefilterRequest& request
         result.error_bound = far.bound;
         result.error_estimate = far.estimate;
     }
-    result.error_bound = std::hypot(result.error_bound, kNearError);
-    result.error_estimate = std::hypot(result.error_estimate, kNearError / 3);
+    result.error_bound = std::hypot(result.error_bound, row.error);
+    result.error_estimate = std::hypot(result.error_estimate, row.error / 3);
     result.seconds_spatial = watch.seconds() - result.seconds_synthesis;
     return result;
 }
@@ -334,7 +365,8 @@ std::vector<PrefilterResult> prefilter(const Panorama& latlong,
             result = byHarmonics(engine, request, engine.plan.lobes[i], options.max_error,
                                  options.threads);
         } else {
-            result = inTwoParts(engine, request, engine.plan.lobes[i], options.threads);
+            result = inTwoParts(engine, request, engine.plan.lobes[i], options.max_error,
+                                options.threads);
         }
         result.seconds_analysis = engine.seconds;
         results.push_back(std::move(result));

@@ -146,9 +146,16 @@ void count(WriteLosses& losses, float value) {
 /// One row of straight colours of 8 bits without a pattern, which needs no powers.
 WriteLosses encodeRowByTable(const float* row, std::size_t values, std::uint8_t* out) {
     linearToSrgb8(row, values, out);
+    std::uint32_t above = 0, below = 0, numbers = 0; // as wide as floats, to be counted in lanes
+    for (std::size_t i = 0; i < values; ++i) {
+        above += row[i] > 1;
+        below += row[i] < 0;
+        numbers += row[i] == row[i];
+    }
     WriteLosses losses;
-    for (std::size_t i = 0; i < values; ++i)
-        count(losses, row[i]);
+    losses.above = above;
+    losses.below = below;
+    losses.not_number = values - numbers;
     for (std::size_t i = 0; losses.above > 0 && i < values; i += 3)
         losses.bright_pixels += row[i] > 1 || row[i + 1] > 1 || row[i + 2] > 1;
     return losses;

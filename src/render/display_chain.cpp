@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "image/finite.h"
 #include "render/blur_pyramid.h"
 #include "render/display_lut.h"
 #include "render/uniforms.h"
@@ -73,6 +74,8 @@ void expose(Image& picture, double exposure, int threads) {
     parallelForRuns(static_cast<std::size_t>(picture.height), 16, threads,
                     [&](std::size_t first, std::size_t last) {
                         float* values = picture.pixels.data();
+                        if (factor == 1 && allFinite({values + first * row, values + last * row}))
+                            return;
                         for (std::size_t i = first * row; i < last * row; ++i) {
                             const float v = values[i] * factor;
                             values[i] =

@@ -26,7 +26,6 @@ struct Building {
     GltfMaterials& materials;
     ObjectFile& result;
     Mesh mesh{};
-    std::vector<std::pair<std::size_t, NamedCamera>> cameras{}; ///< by their number in the file
     bool skipped_lines = false;
 
     const GltfJson& array(const char* key) const { return gltfArray(document, document.json, key); }
@@ -173,10 +172,10 @@ void addCamera(Building& b, std::size_t index, const GltfJson& node, const M44d&
         gltfNumber(b.document, gltfObject(b.document, json, "perspective"), "yfov", 0);
     if (!(fov > 0 && fov < std::numbers::pi)) throw gltfDamaged(b.document, "a yfov cannot be");
     const V3d eye = axis(world, 3);
-    b.cameras.push_back(
+    b.result.cameras.push_back(
         {index,
-         {name,
-          {eye, eye - axis(world, 2).normalized(), axis(world, 1), fov * 180 / std::numbers::pi}}});
+         name,
+         {eye, eye - axis(world, 2).normalized(), axis(world, 1), fov * 180 / std::numbers::pi}});
 }
 
 void addNode(Building& b, const GltfJson& node, const M44d& world) {
@@ -269,9 +268,7 @@ ObjectFile readGltf(const std::string& path, std::span<const char> bytes, int th
     building.mesh.texcoords.resize(
         building.mesh.texcoords.empty() ? 0 : building.mesh.positions.size(), V2f(0));
     finishMesh(path, building.mesh, result.object.parts);
-    std::ranges::stable_sort(building.cameras, {}, [](const auto& c) { return c.first; });
-    for (auto& [index, camera] : building.cameras)
-        result.cameras.push_back(std::move(camera));
+    std::ranges::stable_sort(result.cameras, {}, &NamedCamera::number);
     result.object.mesh = std::move(building.mesh);
     return result;
 }

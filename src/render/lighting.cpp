@@ -17,6 +17,10 @@ constexpr std::size_t kBatch = 256;
 // Memory of a batch's maps, unless they are smaller than that already.
 constexpr std::size_t kMapBytes = std::size_t{256} << 20;
 constexpr GLuint kMapUnit = 8;
+// Directional lights' maps up to that size are of 16 bits, in which a depth is 1/32 of such a map's
+// texel where the object is as deep as wide; comparisons allow for a whole one. So a batch has
+// twice as many maps.
+constexpr int kLargest16BitMap = 2048;
 // What a light adds to a pixel in one sample, as a share of all light. A code of 8 bits on the
 // ground. A surface's outline has but some of a pixel's samples, and so needs more of the lights in
 // each.
@@ -88,12 +92,8 @@ Lighting::Lighting(const Scene& scene, const std::vector<std::string>& surfaces,
       map_size_(map_size),
       samples_(samples) {
     if (maps_needed_) {
-        const bool cut_outs = std::ranges::any_of(
-            scene.object.parts, [](const Part& part) { return part.surface.alpha_cutoff > 0; });
-        std::vector<std::string> definitions = surfaces;
-        definitions.push_back("CUT_OUTS " + std::to_string(cut_outs ? 1 : 0));
         draw_depth_ =
-            makeProgram({{"shadow_map.vert"}, {"surface.glsl", "shadow_map.frag"}, definitions, {}},
+            makeProgram({{"shadow_map.vert"}, {"surface.glsl", "shadow_map.frag"}, surfaces, {}},
                         shader_folder);
         GLuint id = 0;
         glCreateFramebuffers(1, &id);
@@ -156,7 +156,8 @@ void Lighting::chooseLights(const Scene& scene, const V3d& eye) {
 }
 
 std::size_t Lighting::mapsAtOnce(int map_size) {
-    const auto bytes = static_cast<std::size_t>(map_size) * map_size * sizeof(float);
+    const std::size_t texel = map_size <= kLargest16BitMap ? 2 : 4;
+    const auto bytes = static_cast<std::size_t>(map_size) * map_size * texel;
     return std::clamp(kMapBytes / bytes, std::size_t{1}, kBatch);
 }
 
@@ -230,7 +231,9 @@ void Lighting::drawMaps(const Batch& batch, const DrawCaster& draw) {
         GLuint id = 0;
         glCreateTextures(GL_TEXTURE_2D_ARRAY, 1, &id);
         maps_ = Texture(id);
-        glTextureStorage3D(id, 1, GL_DEPTH_COMPONENT32F, map_size_, map_size_, wanted);
+        const GLenum format =
+            local_ || map_size_ > kLargest16BitMap ? GL_DEPTH_COMPONENT32F : GL_DEPTH_COMPONENT16;
+        glTextureStorage3D(id, 1, format, map_size_, map_size_, wanted);
         layers_ = wanted;
         const std::array<float, 4> empty{1, 1, 1, 1};
         glTextureParameteri(id, GL_TEXTURE_MIN_FILTER, GL_NEAREST);

@@ -11,6 +11,7 @@ namespace ibl {
 
 /// A perspective camera of a file.
 struct NamedCamera {
+    std::size_t number = 0; ///< in the file, where not all need be in the scene, or of this kind
     std::string name;
     Camera camera;
 };

@@ -132,8 +132,9 @@ void Renderer::State::makeSurface(const Scene& scene) {
                           options.shader_folder);
     setUniform(surface, "specular_scale", specular_scale);
     if (mesh && mapNeeds(scene.material).far_side) {
-        far_side = makeFarSide({options.width, options.height},
-                               makeProgram(farSideParts(kind), options.shader_folder));
+        far_side = makeFarSide(
+            {options.width, options.height},
+            makeProgram(farSideParts(kind, surfaces.definitions), options.shader_folder));
     }
 }
 
@@ -288,8 +289,12 @@ void Renderer::change(const Material& material, const Turn& turn, const Placemen
     state_->place(turn, placement);
 }
 
-Image Renderer::render(const Camera& camera) {
-    Image frame(state_->options.width, state_->options.height, state_->opaque ? 3 : 4);
+Image Renderer::render(const Camera& camera, Image spare) {
+    const int width = state_->options.width, height = state_->options.height;
+    const int channels = state_->opaque ? 3 : 4;
+    Image frame = std::move(spare);
+    if (frame.width != width || frame.height != height || frame.channels != channels)
+        frame = Image(width, height, channels);
     state_->drawFrame(camera, frame);
     return frame;
 }

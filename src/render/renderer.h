@@ -52,8 +52,10 @@ public:
     void change(const Material& material, const Turn& turn, const Placement& placement);
 
     /// Scene-linear pixels: RGBA, premultiplied, when the scene has no background, otherwise RGB.
-    /// Throws Error (usage) for a camera below the ground.
-    Image render(const Camera& camera);
+    /// Throws Error (usage) for a camera below the ground. The picture takes over the memory of
+    /// `spare`, an earlier one that is no longer needed: the system clears new memory, page by
+    /// page.
+    Image render(const Camera& camera, Image spare = {});
 
     /// What became of the lights in the picture drawn last.
     LightCounts lightCounts() const;

@@ -124,10 +124,12 @@ ProgramParts aovParts(const SurfaceKind& kind, std::vector<std::string> definiti
                   std::move(definitions), std::nullopt);
 }
 
-ProgramParts farSideParts(const SurfaceKind& kind) {
+ProgramParts farSideParts(const SurfaceKind& kind, std::vector<std::string> definitions) {
+    for (std::string& d : kindDefinitions(kind))
+        definitions.push_back(std::move(d));
     return {{"mesh.vert"},
-            {"view.glsl", "mesh_normal.glsl", "far_side.frag"},
-            kindDefinitions(kind),
+            {"view.glsl", "surface.glsl", "mesh_normal.glsl", "far_side.frag"},
+            std::move(definitions),
             {}};
 }
 

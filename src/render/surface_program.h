@@ -20,7 +20,7 @@ std::vector<std::string_view> litFiles(Shader shader);
 /// What draws normals, depth and parts.
 ProgramParts aovParts(const SurfaceKind& kind, std::vector<std::string> definitions);
 /// What draws the far side of a mesh for refraction.
-ProgramParts farSideParts(const SurfaceKind& kind);
+ProgramParts farSideParts(const SurfaceKind& kind, std::vector<std::string> definitions);
 
 /// The uniforms of all parameters that the program has.
 void setMaterial(const Program& program, const Material& material);

@@ -76,6 +76,9 @@ SurfaceTextures uploadSurfaces(const Object& object) {
     define(&Surface::metallic_roughness_texture, "METALLIC_ROUGHNESS_TEXTURE");
     define(&Surface::normal_texture, "NORMAL_TEXTURE");
     define(&Surface::emissive_texture, "EMISSIVE_TEXTURE");
+    const bool cut_outs = std::ranges::any_of(
+        object.parts, [](const Part& part) { return part.surface.alpha_cutoff > 0; });
+    result.definitions.emplace_back(cut_outs ? "CUT_OUTS 1" : "CUT_OUTS 0");
     return result;
 }
 

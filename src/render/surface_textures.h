@@ -11,9 +11,10 @@
 namespace ibl {
 
 struct SurfaceTextures {
-    std::vector<Texture> textures;        ///< as Object::textures, with mip levels
-    Texture white, flat;                  ///< in the place of a texture that a part does not have
-    std::vector<std::string> definitions; ///< of the kinds of texture that any part has
+    std::vector<Texture> textures; ///< as Object::textures, with mip levels
+    Texture white, flat;           ///< in the place of a texture that a part does not have
+    /// Of the kinds of texture that any part has; CUT_OUTS, 0 or 1: alpha cuts out of some part.
+    std::vector<std::string> definitions;
 };
 
 /// Throws Error (input) for an image larger than the device's textures.

@@ -1,7 +1,6 @@
 // Lights, shadows and the ground of render, as users call them.
-#include "cli/tool.h"
+#include "cli/render_support.h"
 
-#include "image/read.h"
 #include "panorama/builtin.h"
 #include "support/oracle.h"
 
@@ -14,21 +13,6 @@ namespace ibl {
 namespace {
 
 using Json = nlohmann::json;
-using Words = std::vector<std::string>;
-
-Image readRgba(const std::string& path) {
-    ReadOptions options;
-    options.keep_alpha = true;
-    return readImage(path, options).image;
-}
-
-Image render(const Scratch& scratch, Words words, const std::string& out = "o.exr") {
-    words.insert(words.begin(), "render");
-    words.insert(words.end(), {"-o", out});
-    const ToolResult result = runTool(words, scratch.path());
-    EXPECT_EQ(result.exit_code, 0) << result.err;
-    return readRgba((scratch / out).string());
-}
 
 double relativeError(const Image& a, const Image& b) {
     double error = 0, reference = 0;

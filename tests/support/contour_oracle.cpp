@@ -194,23 +194,11 @@ Potential makePotential(const std::function<double(double h)>& lobe) {
     return potential;
 }
 
-std::array<double, 3> contourChange(const Image& latlong, const Potential& potential, int face,
-                                    int x, int y, int edge) {
+namespace {
+
+std::array<double, 3> changeWithin(const Image& latlong, const Potential& potential,
+                                   const std::vector<Curve>& outline, double signed_area) {
     const int w = latlong.width, h = latlong.height;
-    std::vector<Curve> outline;
-    const auto corner = [&](double i, double j) {
-        const Direction d = cubeDirection(face, x - 0.5 + i, y - 0.5 + j, edge);
-        return V3d(d.x, d.y, d.z);
-    };
-    const V3d corners[4] = {corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)};
-    for (int k = 0; k < 4; ++k)
-        addArc(corners[k], corners[(k + 1) % 4], outline);
-    // The solid angle of two spherical triangles (Van Oosterom and Strackee 1983).
-    const auto triangle = [&](const V3d& a, const V3d& b, const V3d& c) {
-        return 2 * std::atan2(a.dot(b.cross(c)), 1 + a.dot(b) + b.dot(c) + c.dot(a));
-    };
-    const double signed_area =
-        triangle(corners[0], corners[1], corners[2]) + triangle(corners[0], corners[2], corners[3]);
     std::array<double, 3> change{};
     const auto add = [&](const std::vector<Curve>& side, const float* left, const float* right) {
         double sum = 0;
@@ -238,6 +226,40 @@ std::array<double, 3> contourChange(const Image& latlong, const Potential& poten
         }
     }
     return change;
+}
+
+} // namespace
+
+std::array<double, 3> contourChange(const Image& latlong, const Potential& potential, int face,
+                                    int x, int y, int edge) {
+    std::vector<Curve> outline;
+    const auto corner = [&](double i, double j) {
+        const Direction d = cubeDirection(face, x - 0.5 + i, y - 0.5 + j, edge);
+        return V3d(d.x, d.y, d.z);
+    };
+    const V3d corners[4] = {corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)};
+    for (int k = 0; k < 4; ++k)
+        addArc(corners[k], corners[(k + 1) % 4], outline);
+    // The solid angle of two spherical triangles (Van Oosterom and Strackee 1983).
+    const auto triangle = [&](const V3d& a, const V3d& b, const V3d& c) {
+        return 2 * std::atan2(a.dot(b.cross(c)), 1 + a.dot(b) + b.dot(c) + c.dot(a));
+    };
+    return changeWithin(latlong, potential, outline,
+                        triangle(corners[0], corners[1], corners[2]) +
+                            triangle(corners[0], corners[2], corners[3]));
+}
+
+std::array<double, 3> latlongContourChange(const Image& latlong, const Potential& potential, int x,
+                                           int y, int width, int height) {
+    const double top = kPi * y / height, bottom = kPi * (y + 1) / height;
+    const double west = 2 * kPi * (0.5 - double(x) / width), turn = -2 * kPi / width;
+    std::vector<Curve> outline;
+    // To the next column along the bottom, north, back, south: clockwise as seen from outside.
+    addParallel(bottom, west, turn, outline);
+    addArc(direction(bottom, west + turn), direction(top, west + turn), outline);
+    addParallel(top, west + turn, -turn, outline);
+    addArc(direction(top, west), direction(bottom, west), outline);
+    return changeWithin(latlong, potential, outline, turn * (std::cos(top) - std::cos(bottom)));
 }
 
 } // namespace ibl::oracle

@@ -34,4 +34,8 @@ Potential makePotential(const std::function<double(double h)>& lobe);
 std::array<double, 3> contourChange(const Image& latlong, const Potential& potential, int face,
                                     int x, int y, int edge);
 
+/// The same of texel (x, y) of a lat-long map.
+std::array<double, 3> latlongContourChange(const Image& latlong, const Potential& potential, int x,
+                                           int y, int width, int height);
+
 } // namespace ibl::oracle

@@ -98,8 +98,40 @@ TEST(NarrowTruth, MeansOverTexelsKeepTheAskedError) {
 }
 
 TEST(NarrowTruth, HighIsTenTimesMoreExact) {
-    for (const float sun : {1.0f, 1e5f})
-        EXPECT_LE(difference(probeWithSun(sun), ggx(0.03), Quality::high).rmse, 1e-5) << sun;
+    for (const float sun : {1.0f, 1e5f, 1e9f}) {
+        for (const double roughness : {0.003, 0.03, 0.06})
+            EXPECT_LE(difference(probeWithSun(sun), ggx(roughness), Quality::high).rmse, 1e-6)
+                << sun << " " << roughness;
+    }
+}
+
+TEST(NarrowTruth, ReferenceSumsOverOutlines) {
+    for (const float sun : {1.0f, 1e9f})
+        EXPECT_LE(difference(probeWithSun(sun), ggx(0.02), Quality::reference).rmse, 2e-7) << sun;
+}
+
+/// Texels at a pole, beside it and farther away; at the seam and beside a sun.
+TEST(NarrowTruth, TexelsOfLatLongMapsHaveCurvedSides) {
+    const Image probe = probeWithSun(10);
+    constexpr int kHeight = 12, kWidth = 24;
+    for (const double roughness : {0.005, 0.04}) {
+        const NarrowLobe narrow = ggx(roughness);
+        const PrefilterRequest request{narrow.lobe, Layout::latlong, kHeight};
+        const Panorama source{Layout::latlong, probe};
+        const Image map =
+            prefilter(source, std::span(&request, 1), optionsFor(Quality::high))[0].map.image;
+        const Image area = resample(source, Layout::latlong, kHeight, 0, Enlarging::hold).image;
+        const oracle::Potential potential = oracle::makePotential(narrow.function);
+        for (const auto& [x, y] : {std::pair{5, 0}, {0, 1}, {8, 4}, {9, 3}, {23, 6}, {14, 11}}) {
+            const auto change =
+                oracle::latlongContourChange(probe, potential, x, y, kWidth, kHeight);
+            for (int c = 0; c < 3; ++c) {
+                const double expected = area.at(x, y)[c] + change[static_cast<std::size_t>(c)];
+                EXPECT_NEAR(map.at(x, y)[c] / expected, 1, 2e-6)
+                    << roughness << " at " << x << " " << y;
+            }
+        }
+    }
 }
 
 } // namespace

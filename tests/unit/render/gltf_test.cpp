@@ -68,6 +68,7 @@ struct Square {
     std::vector<float> texcoords{0, 1, 1, 1, 1, 0, 0, 0};
     std::string extra{}, views{};
     std::string positions = R"("bufferView":0)", indices = R"("bufferView":3)";
+    std::string nodes = R"({"mesh":0})";
 };
 constexpr int kExtraAt = 140;
 
@@ -94,22 +95,22 @@ protected:
                                    packed(square.texcoords) +
                                    packed<std::uint16_t>({0, 1, 2, 0, 2, 3}) + square.extra;
         write("square.bin", buffer);
-        write("a.gltf",
-              R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],)"
-              R"("meshes":[{"primitives":[{"attributes":{"POSITION":0,"NORMAL":1,)"
-              R"("TEXCOORD_0":2},"indices":3,"material":0}]}],"materials":[)" +
-                  square.material + R"(],"accessors":[{"componentType":5126,"count":4,)" +
-                  R"("type":"VEC3",)" + square.positions +
-                  R"(},{"componentType":5126,"count":4,"type":"VEC3","bufferView":1},)"
-                  R"({"componentType":5126,"count":4,"type":"VEC2","bufferView":2},)"
-                  R"({"componentType":5123,"count":6,"type":"SCALAR",)" +
-                  square.indices +
-                  R"(}],"bufferViews":[{"buffer":0,"byteLength":48},)"
-                  R"({"buffer":0,"byteOffset":48,"byteLength":48},)"
-                  R"({"buffer":0,"byteOffset":96,"byteLength":32},)"
-                  R"({"buffer":0,"byteOffset":128,"byteLength":12})" +
-                  square.views + R"(],"buffers":[{"uri":"square.bin","byteLength":)" +
-                  std::to_string(buffer.size()) + "}]" + square.more + "}");
+        write("a.gltf", R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[)" +
+                            square.nodes +
+                            R"(],"meshes":[{"primitives":[{"attributes":{"POSITION":0,"NORMAL":1,)"
+                            R"("TEXCOORD_0":2},"indices":3,"material":0}]}],"materials":[)" +
+                            square.material + R"(],"accessors":[{"componentType":5126,"count":4,)" +
+                            R"("type":"VEC3",)" + square.positions +
+                            R"(},{"componentType":5126,"count":4,"type":"VEC3","bufferView":1},)"
+                            R"({"componentType":5126,"count":4,"type":"VEC2","bufferView":2},)"
+                            R"({"componentType":5123,"count":6,"type":"SCALAR",)" +
+                            square.indices +
+                            R"(}],"bufferViews":[{"buffer":0,"byteLength":48},)"
+                            R"({"buffer":0,"byteOffset":48,"byteLength":48},)"
+                            R"({"buffer":0,"byteOffset":96,"byteLength":32},)"
+                            R"({"buffer":0,"byteOffset":128,"byteLength":12})" +
+                            square.views + R"(],"buffers":[{"uri":"square.bin","byteLength":)" +
+                            std::to_string(buffer.size()) + "}]" + square.more + "}");
         return readObject(folder_ + "/a.gltf");
     }
 
@@ -312,6 +313,37 @@ TEST_F(Gltf, TexturesGoOnAsTheirSamplersSay) {
                        image("png", kFourPng)};
     EXPECT_EQ(read(plain).object.textures.at(0).across, Wrap::repeat);
     EXPECT_EQ(read(plain).object.textures.at(0).down, Wrap::repeat);
+}
+
+// A child turned by 45 degrees about Z under a stretched, mirrored parent: sheared. Its turn about
+// X comes first, so that the normal is sheared, too.
+TEST_F(Gltf, NormalsStaySquareToShearedAndMirroredFaces) {
+    Square square;
+    square.nodes = R"({"scale":[1,2,-3],"translation":[0,0,7],"children":[1]},)"
+                   R"({"rotation":[0,0,0.38268343236508977,0.92387953251128674],"children":[2]},)"
+                   R"({"rotation":[0.38268343236508977,0,0,0.92387953251128674],"mesh":0})";
+    const ObjectFile file = read(square);
+    const Mesh& mesh = *file.object.mesh;
+    // About X: x to (1, 0, 0), y to (0, s, s), z to (0, -s, s). About Z: these to (s, s, 0),
+    // (-1/2, 1/2, s), (1/2, -1/2, s). By the parent (s, 2 s, 0), (-1/2, 1, -3 s); the normal goes
+    // by the inverse, to (1/2, -1/4, -s/3).
+    const double s = std::sqrt(0.5);
+    const V3d x(s, 2 * s, 0), y(-0.5, 1, -3 * s), shift(0, 0, 7);
+    const V3d normal = V3d(0.5, -0.25, -s / 3).normalized();
+    EXPECT_NEAR(normal.dot(x), 0, 1e-12);
+    EXPECT_NEAR(normal.dot(y), 0, 1e-12);
+    ASSERT_EQ(mesh.positions.size(), 4u);
+    EXPECT_LT((V3d(mesh.positions[0]) - (shift - x - y)).length(), 1e-6);
+    EXPECT_LT((V3d(mesh.positions[1]) - (shift + x - y)).length(), 1e-6);
+    for (const V3f& n : mesh.normals)
+        EXPECT_LT((V3d(n) - normal).length(), 1e-6) << n;
+    ASSERT_EQ(mesh.indices.size(), 6u);
+    for (std::size_t i = 0; i < 6; i += 3) { // counter-clockwise, seen from outside
+        const V3f& a = mesh.positions[mesh.indices[i]];
+        const V3f &b = mesh.positions[mesh.indices[i + 1]],
+                  &c = mesh.positions[mesh.indices[i + 2]];
+        EXPECT_LT((V3d((b - a).cross(c - a)).normalized() - normal).length(), 1e-6) << i;
+    }
 }
 
 TEST_F(Gltf, SparsePositionsReplaceWhatThereIsOrZeros) {

@@ -193,11 +193,41 @@ TEST_F(ObjectFiles, GltfCamerasStandWhereTheirNodesDo) {
                             R"("rotation":[0,0.70710678118654752,0,0.70710678118654752]})",
                             R"(,"cameras":[{"type":"perspective","perspective":{"yfov":1}}])"));
     ASSERT_EQ(file.cameras.size(), 1u);
-    const auto& [name, camera] = file.cameras[0];
+    const auto& [number, name, camera] = file.cameras[0];
+    EXPECT_EQ(number, 0u);
     EXPECT_EQ(name, "shot");
     EXPECT_EQ(camera.eye, V3d(1, 2, 3));
     EXPECT_LT((camera.target - V3d(0, 2, 3)).length(), 1e-12); // -Z turned by 90 about Y: -X
     EXPECT_NEAR(camera.fov, 57.2957795, 1e-6);
+}
+
+// Under a parent that turns, stretches and mirrors: where it stands, looks and has its up go along,
+// however its node comes to be there. Its number is the file's; those that are of no use have
+// theirs.
+TEST_F(ObjectFiles, GltfCamerasUnderOtherNodesKeepTheirNumbers) {
+    const ObjectFile file =
+        read("a.gltf",
+             gltf(R"({"children":[1,2,3,4]},{"mesh":0},{"camera":3,"translation":[0,0,9]},)"
+                  R"({"scale":[-1,1,2],"rotation":[0,0,0.70710678118654752,0.70710678118654752],)"
+                  R"("translation":[10,0,0],"children":[5]},{"camera":0},)"
+                  R"({"camera":1,"name":"nested","translation":[1,2,3]})",
+                  R"(,"cameras":[{"type":"orthographic","name":"flat"},)"
+                  R"({"type":"perspective","perspective":{"yfov":0.5}},)"
+                  R"({"type":"perspective","perspective":{"yfov":0.25}},)"
+                  R"({"type":"perspective","name":"last","perspective":{"yfov":1}}])"));
+    ASSERT_EQ(file.cameras.size(), 2u);
+    const auto& [number, name, camera] = file.cameras[0];
+    EXPECT_EQ(number, 1u);
+    EXPECT_EQ(name, "nested");
+    // (1, 2, 3) is (-1, 2, 6) scaled, (-2, -1, 6) turned by 90 degrees about Z.
+    EXPECT_LT((camera.eye - V3d(8, -1, 6)).length(), 1e-12);
+    EXPECT_LT((camera.target - camera.eye - V3d(0, 0, -1)).length(), 1e-12);
+    EXPECT_LT((camera.up.normalized() - V3d(-1, 0, 0)).length(), 1e-12);
+    EXPECT_NEAR(camera.fov, 0.5 * 57.2957795, 1e-6);
+    EXPECT_EQ(file.cameras[1].number, 3u);
+    EXPECT_EQ(file.cameras[1].name, "last");
+    ASSERT_EQ(file.notes.size(), 1u);
+    EXPECT_NE(file.notes[0].find("flat is orthographic"), std::string::npos) << file.notes[0];
 }
 
 TEST_F(ObjectFiles, GltfRefusals) {

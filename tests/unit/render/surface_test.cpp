@@ -245,23 +245,54 @@ TEST(Mentions, FindsWholeIdentifiers) {
     EXPECT_TRUE(mentions("my_roughness, roughness", "roughness"));
 }
 
-// A roof whose half at negative x is cut out by its texture's alpha.
-TEST(Surfaces, CutOutsCastNoShadow) {
-    Mesh roof;
-    for (const V3f& p : {V3f(-1, 1, -1), V3f(-1, 1, 1), V3f(1, 1, 1), V3f(1, 1, -1)}) {
-        roof.positions.push_back(p);
-        roof.normals.emplace_back(0, 1, 0);
-        roof.texcoords.emplace_back(0.5F * (p.x + 1), 0.5F * (p.z + 1));
+/// A square about the origin in the plane y = 0, of 2 x 2, looking up, whose half at negative x is
+/// cut out by its texture's alpha.
+Object halfSquare() {
+    Mesh square;
+    for (const V3f& p : {V3f(-1, 0, -1), V3f(-1, 0, 1), V3f(1, 0, 1), V3f(1, 0, -1)}) {
+        square.positions.push_back(p);
+        square.normals.emplace_back(0, 1, 0);
+        square.texcoords.emplace_back(0.5F * (p.x + 1), 0.5F * (p.z + 1));
     }
-    roof.indices = {0, 1, 2, 0, 2, 3};
+    square.indices = {0, 1, 2, 0, 2, 3};
     SurfaceTexture texture{Image(2, 1, 4), Wrap::clamp, Wrap::clamp};
     for (int x = 0; x < 2; ++x)
         std::fill_n(texture.image.at(x, 0), 4, static_cast<float>(x));
     Part part{0, 6, {}};
     part.surface.base_texture = 0;
     part.surface.alpha_cutoff = 0.5;
+    return {square, {part}, {texture}};
+}
+
+// The square under a whole one, seen from above: its far side, of which half is missing.
+TEST(Surfaces, CutOutsAreNoFarSide) {
     Scene scene;
-    scene.object = {roof, {part}, {texture}};
+    scene.object = halfSquare();
+    Mesh& mesh = *scene.object.mesh;
+    for (std::size_t i = 0; i < 4; ++i) {
+        mesh.positions[i].y = -0.5F;
+        mesh.normals[i] = V3f(0, -1, 0);
+        mesh.positions.push_back(mesh.positions[i] + V3f(0, 1, 0));
+        mesh.normals.emplace_back(0, 1, 0);
+        mesh.texcoords.emplace_back(0.0F, 0.0F);
+    }
+    mesh.indices = {0, 2, 1, 0, 3, 2, 4, 5, 6, 4, 6, 7};
+    scene.object.parts.push_back({6, 6, {}});
+    scene.material = own("abs(texelFetch(far_side, ivec2(gl_FragCoord.xy), 0).xyz) + "
+                         "0.0 * throughObject(normal, incident, 1.5)");
+    scene.background = NoBackground{};
+    const int size = 32;
+    const Camera above{{0, 9, 0}, {0, 0, 0}, {0, 0, -1}, 10};
+    const Image drawn = Renderer(softwareContext(), scene, {size, size, 1, {}}).render(above);
+    EXPECT_EQ(pixel(drawn, size / 4, size / 2), V3d(0));
+    EXPECT_EQ(pixel(drawn, 3 * size / 4, size / 2), V3d(0, 1, 0));
+}
+
+TEST(Surfaces, CutOutsCastNoShadow) {
+    Scene scene;
+    scene.object = halfSquare();
+    for (V3f& p : scene.object.mesh->positions)
+        p.y = 1;
     scene.material = Material(Shader::lambert);
     scene.background = ColorBackground(2, 2, 2);
     scene.ground = Ground{0, V3d(0.5)};

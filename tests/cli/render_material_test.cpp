@@ -1,0 +1,140 @@
+// Materials of render and the maps that they read, as users call them.
+#include "cli/render_support.h"
+
+#include "image/write.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace ibl {
+namespace {
+
+TEST(RenderMaterial, FurnaceIsOneForEveryShaderAndObject) {
+    const Scratch scratch;
+    for (const char* object :
+         {"sphere", "cube", "torus", "teapot", "dodecahedron", "cone", "plane"}) {
+        for (const char* shader :
+             {"mirror", "diffuse", "mirror-diffuse", "glass", "dispersion", "coat", "ggx"}) {
+            const Image frame =
+                render(scratch, {"--probe", "builtin:furnace", "--object", object, "--shader",
+                                 shader, "--size", "24x24", "--samples", "4"});
+            for (const float v : frame.pixels) {
+                ASSERT_NEAR(v, 1, 1e-5) << object << " " << shader;
+            }
+        }
+    }
+}
+
+TEST(RenderMaterial, ModelsOnlyWhatTheMaterialRequires) {
+    const Scratch scratch;
+    struct Case {
+        Words words;
+        std::vector<std::string> kernels; ///< of the maps that are convolved
+        std::vector<std::string> stages;  ///< and what else is computed
+    };
+    const std::vector<Case> cases{
+        {{"--shader", "mirror"}, {}, {"read"}},
+        {{"--shader", "glass"}, {}, {"read"}},
+        {{"--shader", "diffuse"}, {"lambert"}, {"read", "convolve"}},
+        {{"--shader", "coat"}, {"lambert"}, {"read", "convolve"}},
+        {{"--shader", "ggx"}, {"ggx", "lambert"}, {"read", "convolve", "split-sum"}},
+        {{"--shader", "ggx", "--metallic", "1"}, {"ggx"}, {"read", "convolve", "split-sum"}},
+        {{"--shader", "ggx", "--metallic", "1", "--samples-specular", "4"}, {}, {"read", "levels"}},
+        {{"--shader", "diffuse", "--diffuse-map", "builtin:sky", "--background", "none"},
+         {},
+         {"read"}},
+    };
+    for (const Case& c : cases) {
+        Words words{"--probe", "builtin:furnace", "--size", "8x8", "--report", "r.json"};
+        words.insert(words.end(), c.words.begin(), c.words.end());
+        render(scratch, words);
+        const auto report = nlohmann::json::parse(readFile(scratch / "r.json"));
+        std::vector<std::string> kernels, stages;
+        for (const auto& map : report["results"].value("maps", nlohmann::json::array()))
+            kernels.push_back(map["kernel"]);
+        for (const char* stage : {"read", "convolve", "split-sum", "levels"})
+            if (report["seconds"].contains(stage)) stages.emplace_back(stage);
+        EXPECT_EQ(kernels, c.kernels) << c.words[1];
+        EXPECT_EQ(stages, c.stages) << c.words[1];
+    }
+}
+
+// Constant maps of another value than the probe's show that they, not the probe, are read.
+TEST(RenderMaterial, TakesMapsBakedEarlier) {
+    const Scratch scratch;
+    Image half(8, 4);
+    for (float& v : half.pixels)
+        v = 0.5f;
+    OutputSet outputs;
+    writeImage(outputs, (scratch / "half.exr").string(), half);
+    outputs.commit();
+    for (const Words& words :
+         {Words{"diffuse", "half.exr", "--size", "4", "-o", "d.exr"},
+          Words{"specular", "half.exr", "--levels", "4", "--size", "16", "-o", "s.exr"}}) {
+        const ToolResult made = runTool(words, scratch.path());
+        ASSERT_EQ(made.exit_code, 0) << made.err;
+    }
+    const auto middle = [&](Words words) {
+        words.insert(words.end(),
+                     {"--probe", "builtin:furnace", "--size", "9x9", "--background", "none"});
+        return render(scratch, words).at(4, 4)[0];
+    };
+    EXPECT_NEAR(middle({"--shader", "diffuse", "--diffuse-map", "d.exr"}), 0.5, 1e-5);
+    for (const char* roughness : {"0", "0.4", "1"}) {
+        EXPECT_NEAR(middle({"--shader", "ggx", "--metallic", "1", "--roughness", roughness,
+                            "--specular-map", "s.exr"}),
+                    0.5, 1e-4);
+    }
+    const auto refused = [&](Words words, int code, const std::string& said) {
+        words.insert(words.begin(), {"render", "--probe", "builtin:furnace", "-o", "q.exr"});
+        expectRefused(runTool(words, scratch.path()), code, said);
+    };
+    refused({"--diffuse-map", "d.exr"}, 1, "--diffuse-map");
+    refused({"--shader", "diffuse", "--specular-map", "s.exr"}, 1, "--specular-map");
+    refused({"--shader", "diffuse", "--diffuse-map", "none.exr"}, 2, "none.exr");
+    refused({"--shader", "ggx", "--specular-map", "d.exr"}, 2, "specular --levels");
+}
+
+TEST(RenderMaterial, OwnShaders) {
+    const Scratch scratch;
+    writeFile(scratch / "own.frag", "uniform float roughness;\n"
+                                    "vec3 shade(vec3 normal, vec3 incident) {\n"
+                                    "    return roughness * probeRadiance(normal);\n}\n");
+    const Image frame = render(scratch, {"--probe", "builtin:furnace", "--size", "9x9", "--shader",
+                                         "own.frag", "--roughness", "0.25", "--depfile", "o.d"});
+    EXPECT_NEAR(frame.at(4, 4)[0], 0.25, 1e-6);
+    EXPECT_EQ(readFile(scratch / "o.d"), "o.exr: own.frag\n");
+    const auto refused = [&](Words words, int code, const std::string& said) {
+        words.insert(words.begin(), {"render", "--probe", "builtin:furnace", "-o", "q.exr"});
+        expectRefused(runTool(words, scratch.path()), code, said);
+    };
+    refused({"--shader", "own.frag", "--metallic", "1"}, 1, "metallic");
+    refused({"--shader", "missing.frag"}, 2, "missing.frag");
+    writeFile(scratch / "none.frag", "// nothing\n");
+    refused({"--shader", "none.frag"}, 2, "shade(vec3 normal");
+    writeFile(scratch / "bad.frag", "\nvec3 shade(vec3 n, vec3 i) { return what; }\n");
+    refused({"--shader", "bad.frag"}, 2, "bad.frag:2: ");
+}
+
+TEST(RenderMaterial, BaseTextureOfIntegersIsDecoded) {
+    const Scratch scratch;
+    // All linear 0.5: a background, and a camera that sees nothing else.
+    render(scratch,
+           {"--probe", "builtin:furnace", "--background", "0.5,0.5,0.5", "--eye", "0,0,9",
+            "--target", "0,0,18", "--size", "16x8"},
+           "grey.png");
+    for (const char* object : {"sphere", "cube", "cylinder", "torus", "teapot", "plane"}) {
+        const Image frame =
+            render(scratch, {"--probe", "builtin:furnace", "--base-texture", "grey.png", "--object",
+                             object, "--elevation", "30", "--background", "0,0,0", "--size",
+                             "32x32", "--samples", "1"});
+        float largest = 0;
+        for (const float v : frame.pixels)
+            largest = std::max(largest, v);
+        EXPECT_NEAR(largest, 0.5, 0.005) << object;
+    }
+}
+
+} // namespace
+} // namespace ibl
