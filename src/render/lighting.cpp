@@ -23,8 +23,8 @@ constexpr GLuint kMapUnit = 8;
 constexpr int kLargest16BitMap = 2048;
 // What a light adds to a pixel in one sample, as a share of all light. A code of 8 bits on the
 // ground. A surface's outline has but some of a pixel's samples, and so needs more of the lights in
-// each.
-constexpr double kGroundStep = 1.0 / 256, kSurfaceStep = 1.0 / 1024;
+// each. Lobes make much of few lights: without more of them outlines sparkle.
+constexpr double kGroundStep = 1.0 / 256, kSurfaceStep = 1.0 / 1024, kLobeStep = 1.0 / 2048;
 
 // As shaders/lights.glsl has them.
 struct LightRecord {
@@ -38,6 +38,13 @@ struct ViewRecord {
 std::array<float, 4> floats(const V3d& v, double w) {
     return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z),
             static_cast<float>(w)};
+}
+
+double stepOf(Shader shader) {
+    if (!shaderInfo(shader).lit) return kGroundStep;
+    const bool lobe =
+        hasParameter(shader, Parameter::reflectivity) || hasParameter(shader, Parameter::f0);
+    return lobe ? kLobeStep : kSurfaceStep;
 }
 
 bool isLocal(const SceneLight& light) {
@@ -136,8 +143,7 @@ void Lighting::chooseLights(const Scene& scene, const V3d& eye) {
     std::vector<SceneLight> shown = lightsThatShow(scene, turned_, similarity_, eye, counts_);
     if (!batches_.empty() && shown == lights_) return;
     lights_ = std::move(shown);
-    const bool lit = shaderInfo(scene.material.shader).lit;
-    of_samples_ = spreadLights(lights_, samples_, lit ? kSurfaceStep : kGroundStep);
+    of_samples_ = spreadLights(lights_, samples_, stepOf(scene.material.shader));
     ground_irradiance_ = V3d(0);
     for (const SceneLight& light : lights_) {
         if (!isLocal(light)) {
