@@ -56,6 +56,9 @@ void checkOptions(const LightsOptions& options) {
         refuse("--max-error: importance does not search for a count; use median or variance");
     if (samples && options.placement)
         refuse("--place: importance places each light itself; leave it out");
+    if (options.placement == LightPlacement::matched && options.max_error)
+        refuse("--max-error: searches with lights at centroids or centres; leave out --place "
+               "matched, or say --count");
     if (!options.preview.empty() && std::filesystem::path(options.preview).extension() != ".png")
         refuse("--preview: " + options.preview + ": is written as PNG; end it in .png");
 }
@@ -188,16 +191,19 @@ void bindCuts(CLI::App& app, LightsOptions& options) {
                "and Debevec 2009; importance: a low-discrepancy set")
             ->check(CLI::IsMember({"median", "variance", "importance"}))
             ->type_name("NAME");
-    CLI::Option* place =
-        app.add_option_function<std::string>(
-               "--place",
-               [&options](const std::string& name) {
-                   options.placement =
-                       name == "centre" ? LightPlacement::centre : LightPlacement::centroid;
-               },
-               "Where in its region a light stands (default centroid, of its energy)")
-            ->check(CLI::IsMember({"centroid", "centre"}))
-            ->type_name("WHERE");
+    CLI::Option* place = app.add_option_function<std::string>(
+                                "--place",
+                                [&options](const std::string& name) {
+                                    options.placement = name == "centre" ? LightPlacement::centre
+                                                        : name == "matched"
+                                                            ? LightPlacement::matched
+                                                            : LightPlacement::centroid;
+                                },
+                                "Where in its region a light stands (default centroid, of its "
+                                "energy; matched: moved "
+                                "from there so that all lights together are nearer the probe)")
+                             ->check(CLI::IsMember({"centroid", "centre", "matched"}))
+                             ->type_name("WHERE");
     CLI::Option* previous =
         app.add_option("--previous", options.previous,
                        "Lights of the frame before, whose identity and order are kept")

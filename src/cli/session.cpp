@@ -39,6 +39,13 @@ std::string makeEscaped(const std::string& name) {
     return escaped;
 }
 
+/// A Radiance file holds mantissas and powers of two, without signs: no pixel can be bad as long as
+/// nothing was divided out.
+bool isValidByFormat(const ProbeFile& file) {
+    return file.metadata.format == "radiance" && file.files.size() <= 1 &&
+           file.metadata.exposure == 1 && file.metadata.colour_correction == V3d(1);
+}
+
 std::string shortNumber(double value) {
     char text[32];
     std::snprintf(text, sizeof text, "%.6g", value);
@@ -128,7 +135,7 @@ Panorama Session::readProbe(const ProbeOptions& options) {
     ProbeFile file = readUnscreened(options);
     if (options.repair) {
         mend(options.input, file.panorama);
-    } else {
+    } else if (!isValidByFormat(file)) {
         stage("screen", [&] { screen(options.input, file.panorama); });
     }
     return std::move(file.panorama);

@@ -4,6 +4,7 @@
 #include "lights/frame_identity.h"
 #include "lights/importance.h"
 #include "lights/irradiance_error.h"
+#include "lights/matched_places.h"
 
 #include <algorithm>
 #include <array>
@@ -220,12 +221,15 @@ LightSet cutLights(const Image& latlong, const LightRequest& request, int thread
         set = fewestLights(latlong, request, threads);
     } else {
         const auto [probe, energy] = sumProbe(latlong, harmonicDegree(request.count), threads);
+        const bool matched = request.placement == LightPlacement::matched;
         set.lights = lightsFor(latlong, request, energy, threads);
+        if (matched) matchPlaces(set.lights, probe, threads);
         set.irradiance_error = errorOf(set.lights, probe, threads);
         const bool same_count =
             request.previous && request.previous->lights.size() == set.lights.size();
-        const auto kept = same_count ? inPreviousRegions(latlong, request, threads) : std::nullopt;
+        auto kept = same_count ? inPreviousRegions(latlong, request, threads) : std::nullopt;
         if (kept) {
+            if (matched) matchPlaces(*kept, probe, threads);
             const double error = errorOf(*kept, probe, threads);
             if (error <= 1.25 * set.irradiance_error) {
                 set.lights = *kept;

@@ -25,7 +25,7 @@ struct LightRequest {
     /// sphere on, whose lights have at most this irradiance error. No fewer cuts of that sequence
     /// have it. Not with LightMethod::importance.
     std::optional<double> max_error;
-    LightPlacement placement = LightPlacement::centroid;
+    LightPlacement placement = LightPlacement::centroid; ///< matched: not with max_error
     /// Lights of the frame before, by the same method. Their regions are kept where they still
     /// cover the probe and their error is at most a quarter above that of a new cut.
     const LightSet* previous = nullptr;

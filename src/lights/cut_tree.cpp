@@ -64,9 +64,10 @@ Light lightOf(const RegionSums& sums, const PixelRegion& region, int width, int 
     light.solid_angle = sums.solid_angle;
     light.region = angularRegion(region, width, height);
     const V3d centroid = sums.energy > 0 ? sums.moment / sums.energy : V3d(0);
+    light.radius = std::sqrt(std::max(0.0, 1 - centroid.length2()));
     // A centroid near the sphere's centre points nowhere: take the middle of the region.
     const double length = centroid.length();
-    light.direction = placement == LightPlacement::centroid && length > 1e-9
+    light.direction = placement != LightPlacement::centre && length > 1e-9
                           ? centroid / length
                           : middleOf(*light.region);
     return light;

@@ -52,10 +52,11 @@ struct RegionSums {
 std::vector<RegionSums> regionSums(const Image& latlong, const std::vector<PixelRegion>& regions,
                                    int threads);
 
-enum class LightPlacement { centroid, centre };
+/// The middle of a region's rectangle is where Debevec 2005 has its light; `matched` begins at the
+/// energy's centroid (matched_places.h).
+enum class LightPlacement { centroid, centre, matched };
 
-/// The light of a region of a width x height lat-long, at its energy centroid or at the middle of
-/// its rectangle (as Debevec 2005 has it).
+/// The light of a region of a width x height lat-long, at its centroid or centre.
 Light lightOf(const RegionSums& sums, const PixelRegion& region, int width, int height,
               LightPlacement placement);
 

@@ -36,6 +36,8 @@ struct Light {
     V3d irradiance{0};      ///< RGB: radiance times solid angle summed over the set, i.e. the
                             ///< irradiance on a surface that faces the light
     double solid_angle = 0; ///< of the set, steradians
+    double radius = 0;      ///< of a cut: root mean square distance, on the unit sphere, of its
+                            ///< luminance from its centroid
     int id = 0;             ///< the same for the same light from frame to frame
     std::optional<AngularRegion> region;  ///< of a cut
     std::optional<double> angular_radius; ///< of a lamp, radians

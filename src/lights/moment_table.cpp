@@ -11,11 +11,6 @@
 namespace ibl {
 namespace {
 
-IBL_INLINE void addTo(double* sums, const Lanes& values) {
-    const Lanes total = loadLanes(sums) + values;
-    __builtin_memcpy(sums, &total, sizeof total);
-}
-
 /// Adds a row of pixels to its blocks' energies and moments, four doubles each. A pixel's are its
 /// luminance times `row` times its column's (1, sin, 1, cos).
 IBL_MULTIVERSION
@@ -25,6 +20,7 @@ void addPixelRow(const float* rgb, const ColumnMoments& columns, const double (&
     const Lanes weights = loadLanes(row);
     int i = 0;
     for (; i + kLanes <= width; i += kLanes) {
+        fetchAhead(rgb + 3 * i);
         const Lanes luminance = absoluteLuminance(pixelLanes(rgb + 3 * i));
         Lanes v[kLanes];
         for (int k = 0; k < kLanes; ++k)

@@ -96,24 +96,30 @@ void addRows(const Image& probe, const std::vector<RowTap>& taps, float* line) {
     }
 }
 
-/// Adds the line's pixels (RGB, and one float after the last) to the grid's columns of four floats;
-/// the taps reach one column beyond the left, three the right.
+/// Spreads the line's pixels (RGB, and one float after the last) over the grid's columns of four
+/// floats, which are zero before; the taps reach one column beyond the left, three the right. The
+/// four columns that pixels go to are kept in registers until no pixel goes to them any more.
 IBL_MULTIVERSION
 void spreadColumns(const float* line, const std::vector<ColumnTap>& columns, float* grid) {
-    std::size_t i = 0;
-    while (i < columns.size()) {
-        float* out = grid + 4 * (columns[i].first + 1);
-        FloatLanes sums[4];
-        __builtin_memcpy(sums, out, sizeof sums);
-        for (const int first = columns[i].first; i < columns.size() && columns[i].first == first;
-             ++i) {
-            FloatLanes pixel;
-            __builtin_memcpy(&pixel, line + 3 * i, sizeof pixel);
-            for (std::size_t k = 0; k < 4; ++k)
-                sums[k] += columns[i].weight[k] * pixel;
+    FloatLanes sums[4]{};
+    int first = columns[0].first;
+    const auto put = [&](const FloatLanes& sum) __attribute__((always_inline)) {
+        __builtin_memcpy(grid + 4 * (first++ + 1), &sum, sizeof sum);
+    };
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+        while (first < columns[i].first) {
+            put(sums[0]);
+            for (std::size_t k = 0; k < 3; ++k)
+                sums[k] = sums[k + 1];
+            sums[3] = FloatLanes{};
         }
-        __builtin_memcpy(out, sums, sizeof sums);
+        FloatLanes pixel;
+        __builtin_memcpy(&pixel, line + 3 * i, sizeof pixel);
+        for (std::size_t k = 0; k < 4; ++k)
+            sums[k] += columns[i].weight[k] * pixel;
     }
+    for (const FloatLanes& sum : sums)
+        put(sum);
 }
 
 /// A row of the grid, four floats a column, after one that is not part of it.
@@ -133,12 +139,12 @@ std::vector<float> gridRow(const Image& probe, const std::vector<RowTap>& rows,
 
 /// cos and sin of m psi_c for c = 0 .. columns / 4, m fastest, `waves` of them a column.
 struct WaveTable {
-    int waves; ///< degree + 1, rounded up to whole vectors
+    int waves; ///< degree + 1, rounded up to whole pairs of vectors
     std::vector<double> cosine, sine;
 };
 
 WaveTable waveTable(int degree, int columns) {
-    WaveTable table{(degree + kLanes) / kLanes * kLanes, {}, {}};
+    WaveTable table{(degree + 2 * kLanes) / (2 * kLanes) * (2 * kLanes), {}, {}};
     std::vector<double> cosine, sine;
     for (int k = 0; k < columns; ++k) {
         cosine.push_back(std::cos(2 * kPi * k / columns));
@@ -185,18 +191,24 @@ std::vector<Folded> fold(const float* grid, int columns) {
 /// sum_c x_c exp(-i m psi_c) of three channels: re, im, re, im, re, im, each of `waves` values.
 IBL_MULTIVERSION
 void waves(const WaveTable& table, const std::vector<Folded>& folded, double* out) {
-    for (int m = 0; m < table.waves; m += kLanes) {
-        Lanes sums[6]{};
+    for (int m = 0; m < table.waves; m += 2 * kLanes) {
+        Lanes sums[6]{}, next[6]{};
         for (std::size_t c = 0; c < folded.size(); ++c) {
             const std::size_t at = c * static_cast<std::size_t>(table.waves) + m;
-            const Lanes cosine = loadLanes(&table.cosine[at]), sine = loadLanes(&table.sine[at]);
+            const double *cosine = &table.cosine[at], *sine = &table.sine[at];
             for (std::size_t k = 0; k < 3; ++k) {
-                sums[2 * k] += loadLanes(folded[c].cosine[k].data()) * cosine;
-                sums[2 * k + 1] -= loadLanes(folded[c].sine[k].data()) * sine;
+                const Lanes with_cosine = loadLanes(folded[c].cosine[k].data());
+                const Lanes with_sine = loadLanes(folded[c].sine[k].data());
+                sums[2 * k] += with_cosine * loadLanes(cosine);
+                next[2 * k] += with_cosine * loadLanes(cosine + kLanes);
+                sums[2 * k + 1] -= with_sine * loadLanes(sine);
+                next[2 * k + 1] -= with_sine * loadLanes(sine + kLanes);
             }
         }
-        for (int k = 0; k < 6; ++k)
+        for (int k = 0; k < 6; ++k) {
             __builtin_memcpy(out + k * table.waves + m, &sums[k], sizeof sums[k]);
+            __builtin_memcpy(out + k * table.waves + m + kLanes, &next[k], sizeof next[k]);
+        }
     }
 }
 

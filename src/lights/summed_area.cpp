@@ -37,6 +37,7 @@ void addEnergyRow(const float* rgb, int width, double weight, const std::int64_t
     below[0] = 0;
     int i = 0;
     for (; i + kLanes <= width; i += kLanes) {
+        fetchAhead(rgb + 3 * i);
         LongLanes sums = runningSums(rounded(weight * litLuminance(pixelLanes(rgb + 3 * i))));
         sums += before;
         before = __builtin_shufflevector(sums, sums, 3, 3, 3, 3);

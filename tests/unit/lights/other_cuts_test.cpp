@@ -211,6 +211,30 @@ TEST(AllMethods, BlackAndNegativeProbesHaveNone) {
     }
 }
 
+TEST(AllMethods, ASunOverAPoleIsOneDirection) {
+    // Rows 0 and 1 of 64, i.e. 5.6 degrees about the pole, all of their columns.
+    for (const bool south : {false, true}) {
+        Image image = filled(128, 64, 1e-3f);
+        for (int x = 0; x < 128; ++x) {
+            for (const int y : {0, 1})
+                setPixel(image, x, south ? 63 - y : y, 1e6f, 1e6f, 1e6f);
+        }
+        for (const LightMethod method :
+             {LightMethod::median, LightMethod::variance, LightMethod::importance}) {
+            for (const int count : {1, 5, 64}) {
+                const LightSet set = lightsOfProbe(image, method, count);
+                for (const Light& light : set.lights) {
+                    if (light.irradiance.x < 1) continue;
+                    EXPECT_GT((south ? -1 : 1) * light.direction.y, std::cos(5.7 * kPi / 180))
+                        << methodName(method) << " " << count;
+                }
+                const double most = method == LightMethod::importance ? 0.1 : 0.01;
+                EXPECT_LT(set.irradiance_error, most) << methodName(method) << " " << count;
+            }
+        }
+    }
+}
+
 TEST(Importance, AnyPrefixOfTheSphereGetsItsShareOfLights) {
     const Image image = noise(64, 32, 45);
     const std::vector<Light> lights = lightsOfProbe(image, LightMethod::importance, 4096).lights;
