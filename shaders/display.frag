@@ -1,6 +1,7 @@
-// From radiance to display light: exposure, the glow that lenses add, vignette, tone map. Colours are
-// premultiplied by alpha; tone maps apply to the straight colour. Defined as 0 or 1: STRAIGHT (alpha may
-// be below 1), GLOW, EVEN (the frame's sides are even); and TONE, a function of tone_maps.glsl.
+// From radiance to display light: exposure, the glow that lenses add, vignette, tone map. Colours
+// are premultiplied by alpha; tone maps apply to the straight colour. Defined as 0 or 1: STRAIGHT
+// (alpha may be below 1), GLOW, EVEN (the half-size pictures are exactly that); and TONE, a
+// function of tone_maps.glsl.
 layout(binding = 0) uniform sampler2D frame; // or the part of it from texture_origin
 uniform ivec2 texture_origin;
 layout(binding = 1) uniform sampler2D glow; // what is scattered, by its weights
@@ -9,7 +10,8 @@ uniform float glare_weight;                 // of everything
 uniform float vignette;
 out vec4 color;
 
-// Light through a lens falls off by cos^4 of the angle to its axis; the corners stand at 45 degrees.
+// Light through a lens falls off by cos^4 of the angle to its axis; the corners stand at 45
+// degrees.
 float vignetteFactor() {
     vec2 from_centre = (vec2(framePixel()) + 0.5) / vec2(frame_size) - 0.5;
     vec2 r = from_centre * vec2(frame_size) / (0.5 * length(vec2(frame_size)));
@@ -23,7 +25,7 @@ void main() {
 #if GLOW
     c *= 1.0 - bright_weight * brightShare(c) - glare_weight;
 #if EVEN
-    c += enlargedTwice(glow, framePixel());
+    c += enlargedTwice(glow, framePixel(), frame_size);
 #else
     c += enlarged(glow, framePixel(), frame_size);
 #endif

@@ -1,6 +1,6 @@
-// A level of the pyramid of Gaussians of reinhard_local.glsl: every second sample of the finer one, by
-// 1 5 8 5 1 / 20 along each axis. Defined as 0 or 1: PICTURE (the finer one is the picture, of which the
-// texture holds a part, and whose border goes on outside).
+// A level of the pyramid of Gaussians of reinhard_local.glsl: every second sample of the finer one,
+// by 1 5 8 5 1 / 20 along each axis. Defined as 0 or 1: PICTURE (the finer one is the picture, of
+// which the texture holds a part, and whose border goes on outside).
 layout(binding = 0) uniform sampler2D fine;
 uniform ivec2 fine_size;   // of the whole
 uniform ivec2 fine_origin; // of the part that the texture holds

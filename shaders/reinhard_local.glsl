@@ -1,10 +1,11 @@
 // Dodging and burning (Reinhard et al. 2002, eq. 5 to 9): the luminance x becomes x / (1 + V(s)), s the
 // largest scale at which centre V(s) and surround V(s + 1) still agree,
 //     |V(s) - V(s + 1)| / (2^phi key / s^2 + V(s)) < local-contrast.
-// As in the authors' own program, V is a pyramid of Gaussians (Burt and Adelson 1983) whose level k has a
-// sample at every 2^k th pixel, bilinear between them, and s grows from 1 to 43 over eight levels.
-// Outside, the picture's border goes on (in that program it is black there, which brightens the border).
-// Level k >= 1 is mip level k - 1 of `levels`, with a margin of 2^(8-k) samples; level 0 is the picture.
+// As in the authors' own program, V is a pyramid of Gaussians (Burt and Adelson 1983) whose level k
+// has a sample at every 2^k th pixel, bilinear between them, and s grows from 1 to 43 over eight
+// levels. Outside, the picture's border goes on; in that program it is black there, which brightens
+// the border. Level k >= 1 is mip level k - 1 of `levels`, with a margin of 2^(8-k) samples; level 0
+// is the picture.
 layout(binding = 2) uniform sampler2D levels;
 uniform float key;
 

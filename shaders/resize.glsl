@@ -50,12 +50,8 @@ vec3 enlarged(sampler2D coarse, ivec2 at, ivec2 size) {
     return sum;
 }
 
-// The same where the coarse picture is exactly half as large: 3/4 and 1/4 along each axis.
-vec3 enlargedTwice(sampler2D coarse, ivec2 at) {
-    ivec2 m = textureSize(coarse, 0), near = at >> 1;
-    ivec2 far = clamp(near + ((at & 1) << 1) - 1, ivec2(0), m - 1);
-    return 0.5625 * texelFetch(coarse, near, 0).rgb +
-           0.1875 * (texelFetch(coarse, ivec2(far.x, near.y), 0).rgb +
-                     texelFetch(coarse, ivec2(near.x, far.y), 0).rgb) +
-           0.0625 * texelFetch(coarse, far, 0).rgb;
+// The same where the coarse picture is exactly half as large: 3/4 and 1/4 along each axis, which is
+// linear between its pixels.
+vec3 enlargedTwice(sampler2D coarse, ivec2 at, ivec2 size) {
+    return texture(coarse, (vec2(at) + 0.5) / vec2(size)).rgb;
 }

@@ -4,6 +4,10 @@
 layout(binding = 2) uniform sampler2D surrounds;
 
 vec3 retinexTone(vec3 c) {
+#if EVEN
+    vec3 sum = enlargedTwice(surrounds, framePixel(), frame_size);
+#else
     vec3 sum = enlarged(surrounds, framePixel(), frame_size);
+#endif
     return (clamp(c, 0.0, 1e30) + parameters[2]) * exp(-parameters[0] * sum);
 }

@@ -98,8 +98,10 @@ double referenceNorm(const ProbeStatistics& probe, const std::vector<double>& k)
     double mean = 0; // norm of the constant field of the mean
     for (const double a : probe.absolute)
         mean += a * a / (4 * kPi);
-    // Pixels are taken as apart from one another, which for non-negative probes only makes it less.
-    const double spots = kernel * probe.squares;
+    // Pixels are taken as apart from one another, which for non-negative probes only makes it less:
+    // smaller than the lobe each is a spot of the lobe's shape, larger than it its own.
+    const double small = kernel * probe.squares;
+    const double spots = small > 0 ? small * probe.energy / (small + probe.energy) : 0;
     return std::min(std::sqrt(std::max(mean, spots)), 4 * std::sqrt(mean));
 }
 

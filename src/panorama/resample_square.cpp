@@ -1,11 +1,10 @@
-// To and from square maps, and whatever has no closed form: a texel of the result is cut into
-// cells, whose corners and middles of edges are carried into the source's image and joined by
-// straight lines there. Neighbouring cells share them, so they tile the source's plane and every
-// source pixel gives away its whole area (to 5e-3; beside -Z on ball maps to 2.4e-2). A cell with
-// an edge whose middle is not the mean of its ends, or whose own middle is not that of its corners
-// (bent, or across a fold, rim or edge of a face), is quartered. The edges must be looked at: where
-// the map is harmonic, as longitude nearly is about a pole, the corners' mean is the middle however
-// much the edges bend.
+// To and from square maps, and whatever has no closed form: a texel of the result is a polygon on
+// the sphere, cut where the source's image has seams, folds and singular points, carried into that
+// image (chart.h) and cut into its pixels there. Neighbouring texels share their sides' vertices,
+// so the polygons tile the source and every pixel gives away its whole area: of lat-longs, where
+// area is solid angle, to rounding; of others to what a pixel's solid angle differs from its
+// density at the middle of each part.
+#include "panorama/chart.h"
 #include "panorama/lookup.h"
 #include "panorama/resample_parts.h"
 #include "panorama/square_maps.h"
@@ -15,30 +14,21 @@
 namespace ibl {
 namespace {
 
-/// Cells' edges and middles bend by no more than this many source pixels, so that the two halves of
-/// an edge bend by no more than a quarter of it...
-constexpr double kBend = 0.01;
-/// ...unless a cell has less than this part of a source pixel's solid angle: then the source is
-/// read at its middle.
-constexpr double kSmallest = 1.0 / 4096;
-/// Bounds the recursion where lat-long pixels shrink to nothing, at their poles.
-constexpr int kMostQuarterings = 24;
-/// Corners stand this much inside, because texels' edges are where cubes' faces meet and discs end.
-constexpr double kInside = 1e-9;
+/// Sides of texels are followed to this part of the source's mean pixel and of the texel.
+constexpr double kFollow = 2e-4;
 
-double area(const std::vector<V2d>& p) {
+double area(const std::vector<V2d>& p) { ///< signed
     double sum = 0;
-    for (std::size_t i = 0; i < p.size(); ++i) {
-        const V2d &a = p[i], &b = p[(i + 1) % p.size()];
-        sum += a.x * b.y - a.y * b.x;
+    for (std::size_t i = 1; i + 1 < p.size(); ++i) {
+        const V2d a = p[i] - p[0], b = p[i + 1] - p[0];
+        sum += 0.5 * (a.x * b.y - a.y * b.x);
     }
-    return 0.5 * std::abs(sum);
+    return sum;
 }
 
 /// The part of a polygon between two lines across an axis (Sutherland and Hodgman 1974).
 void cutBetween(const std::vector<V2d>& polygon, int axis, double low, double high,
-                std::vector<V2d>& kept) {
-    std::vector<V2d> half;
+                std::vector<V2d>& half, std::vector<V2d>& kept) {
     const auto cut = [axis](const std::vector<V2d>& from, double limit, double sign,
                             std::vector<V2d>& to) {
         to.clear();
@@ -59,172 +49,127 @@ public:
     AreaReader(const Panorama& source, const Panorama& result)
         : source_(source),
           result_(result),
+          sectors_(sectorsOf(source.layout)),
           width_(source.image.width),
           height_(source.image.height),
-          columns_(source.layout == Layout::latlong ? source.image.width : 0),
-          steradians_(steradiansPerPixel(source.layout, width_, height_)),
-          mean_pixel_(4 * kPi / (static_cast<double>(width_) * height_)) {}
+          tolerance_(kFollow * std::sqrt(4 * kPi) /
+                     std::sqrt(std::max(pixelsOf(source.image), pixelsOf(result.image)))) {
+        for (int j = 0; j <= height_ && source.layout == Layout::latlong; ++j)
+            rows_.push_back(-std::cos(kPi * j / height_));
+    }
 
     /// Mean of the source over what belongs to a texel; false if nothing was found.
     bool mean(int x, int y, V3d& value) {
         sum_ = V3d(0);
         weight_ = 0;
-        const Image& image = result_.image;
+        const int n = result_.image.width;
         if (!isBallMap(result_.layout)) {
-            read(x, y, 1, 0);
+            read(x, y, 1);
+        } else if (n == 1) { // the disc touches the texel's sides alone
+            for (int k = 0; k < 4; ++k)
+                read(0.5 * (k % 2), 0.5 * (k / 2), 0.5);
         } else {
-            for (int j = std::max(0, y - 1); j <= std::min(image.height - 1, y + 1); ++j) {
-                for (int i = std::max(0, x - 1); i <= std::min(image.width - 1, x + 1); ++i) {
-                    if (owningTexel(result_.layout, image.width, i, j) == V2i(x, y))
-                        read(i, j, 1, 0);
+            for (int j = std::max(0, y - 1); j <= std::min(n - 1, y + 1); ++j) {
+                for (int i = std::max(0, x - 1); i <= std::min(n - 1, x + 1); ++i) {
+                    if (owningTexel(result_.layout, n, i, j) == V2i(x, y)) read(i, j, 1);
                 }
             }
         }
-        if (!(weight_ > 0)) return false;
+        if (weight_ == 0) return false;
         value = sum_ / weight_;
         return true;
     }
 
 private:
-    /// Direction of a point of the result; outside a disc that of its rim.
-    V3d direction(double x, double y) const {
-        const Image& image = result_.image;
-        return texelDirection(result_.layout, image.width, image.height, x, y)
-            .value_or(V3d(0, 0, -1));
+    static double pixelsOf(const Image& image) {
+        return static_cast<double>(image.width) * image.height;
     }
 
-    V2d placeOf(const V3d& d) const { return texelPoint(source_.layout, width_, height_, d); }
-
-    /// Quarters of the square of edge `size` at (x, y), as often as they need it.
-    void read(double x, double y, double size, int depth) {
-        if (isOutside(x, y, size)) return;
-        const double half = 0.5 * size, end = size - kInside;
-        const auto middle = texelDirection(result_.layout, result_.image.width,
-                                           result_.image.height, x + half, y + half);
-        const V3d d = middle.value_or(V3d(0, 0, -1));
-        const V2d centre = placeOf(d);
-        if (middle) {
-            // Corners, and middles of edges after them, around the cell.
-            const std::array<V2d, 8> steps{
-                V2d(kInside, kInside), V2d(half, kInside), V2d(end, kInside), V2d(end, half),
-                V2d(end, end),         V2d(half, end),     V2d(kInside, end), V2d(kInside, half)};
-            std::array<V2d, 8> around;
-            std::transform(steps.begin(), steps.end(), around.begin(), [&](const V2d& step) {
-                return placeOf(direction(x + step.x, y + step.y));
-            });
-            if (isFlat(centre, around)) return readCell(around);
-        }
-        const double unit = size * size * unitDensity();
-        if (depth < kMostQuarterings && unit > kSmallest * pixelSolidAngle(d)) {
-            for (int k = 0; k < 4; ++k)
-                read(x + k % 2 * half, y + k / 2 * half, half, depth + 1);
-        } else if (middle) {
-            add(static_cast<int>(centre.x), static_cast<int>(centre.y),
-                unit * solidAngleDensity(result_.layout, d));
+    void read(double x, double y, double size) {
+        outline_.clear();
+        appendCell(result_, x, y, size, tolerance_, outline_);
+        for (const Sector& sector : sectors_) {
+            clipTo(sector, outline_, part_);
+            if (part_.size() < 3) continue;
+            carry(source_, sector, part_, flat_);
+            if (flat_.size() >= 3) readFlat();
         }
     }
 
-    /// Of the source's pixels about a direction; of square maps and faces the mean.
-    double pixelSolidAngle(const V3d& d) const {
-        if (source_.layout != Layout::latlong) return mean_pixel_;
-        return solidAngleDensity(source_.layout, d) * steradians_;
+    int rowAt(double y) const {
+        if (rows_.empty()) return static_cast<int>(std::floor(y));
+        const auto row = static_cast<int>(std::acos(std::clamp(-y, -1.0, 1.0)) / kPi * height_);
+        return row - (y < rows_[static_cast<std::size_t>(std::clamp(row, 0, height_))] ? 1 : 0);
+    }
+    double rowTop(int row) const {
+        return rows_.empty() ? row : rows_[static_cast<std::size_t>(row)];
     }
 
-    /// Whether a square lies outside a ball map's disc.
-    bool isOutside(double x, double y, double size) const {
-        if (!isBallMap(result_.layout)) return false;
-        const double middle = 0.5 * result_.image.width;
-        return std::hypot(std::clamp(middle, x, x + size) - middle,
-                          std::clamp(middle, y, y + size) - middle) > middle;
-    }
-
-    /// Steradians to a pixel of the result where its density is 1.
-    double unitDensity() const {
-        return steradiansPerPixel(result_.layout, result_.image.width, result_.image.height);
-    }
-
-    /// Brings a cell's points to the side of a lat-long's seam where its middle is.
-    bool isFlat(const V2d& centre, std::array<V2d, 8>& around) const {
-        for (V2d& p : around) {
-            if (columns_ > 0) {
-                if (p.x - centre.x > 0.5 * columns_) p.x -= columns_;
-                if (centre.x - p.x > 0.5 * columns_) p.x += columns_;
-            } else if (source_.layout == Layout::faces &&
-                       std::floor(p.y / width_) != std::floor(centre.y / width_)) {
-                return false;
-            }
-        }
-        const auto near = [](const V2d& a, const V2d& b) {
-            return std::abs(a.x - b.x) < kBend && std::abs(a.y - b.y) < kBend;
-        };
-        for (std::size_t i = 0; i < 8; i += 2) {
-            if (!near(around[i + 1], (around[i] + around[(i + 2) % 8]) * 0.5)) return false;
-        }
-        return near(centre, (around[0] + around[2] + around[4] + around[6]) * 0.25);
-    }
-
-    void readCell(const std::array<V2d, 8>& around) {
-        const std::vector<V2d> cell(around.begin(), around.end());
-        double left = cell[0].x, right = left, top = cell[0].y, bottom = top;
-        for (const V2d& p : cell) {
+    /// Cuts a polygon of the chart into pixels.
+    void readFlat() {
+        double left = flat_[0].x, right = left, top = flat_[0].y, bottom = top;
+        for (const V2d& p : flat_) {
             left = std::min(left, p.x);
             right = std::max(right, p.x);
             top = std::min(top, p.y);
             bottom = std::max(bottom, p.y);
         }
-        std::vector<V2d> strip, part;
-        for (int y = static_cast<int>(std::floor(top)); y < bottom; ++y) {
-            cutBetween(cell, 1, y, y + 1, strip);
-            for (int x = static_cast<int>(std::floor(left)); x < right; ++x) {
-                cutBetween(strip, 0, x, x + 1, part);
-                if (part.size() >= 3) addPart(x, y, part);
+        const int first_row = std::clamp(rowAt(top), 0, height_ - 1),
+                  last_row = std::clamp(rowAt(bottom), 0, height_ - 1);
+        const int first = std::clamp(static_cast<int>(std::floor(left)), 0, width_ - 1),
+                  last = std::clamp(static_cast<int>(std::floor(right)), 0, width_ - 1);
+        for (int y = first_row; y <= last_row; ++y) {
+            cutBetween(flat_, 1, rowTop(y), rowTop(y + 1), half_, strip_);
+            if (strip_.size() < 3) continue;
+            for (int x = first; x <= last; ++x) {
+                cutBetween(strip_, 0, x, x + 1, half_, piece_);
+                if (piece_.size() >= 3) addPiece(x, y);
             }
         }
     }
 
-    void addPart(int x, int y, const std::vector<V2d>& part) {
-        V2d middle(0);
-        for (const V2d& p : part)
-            middle += p / static_cast<double>(part.size());
-        if (columns_ > 0) middle.x -= std::floor(middle.x / columns_) * columns_;
-        const auto d = texelDirection(source_.layout, width_, height_, middle.x, middle.y);
-        if (!d) return;
-        add(x, y, area(part) * solidAngleDensity(source_.layout, *d) * steradians_);
+    /// Solid angle to a unit of area at a point of the chart.
+    double densityAt(const V2d& p) const {
+        const auto d = texelDirection(source_.layout, width_, height_, p.x, p.y);
+        return d ? solidAngleDensity(source_.layout, *d) : 0;
     }
 
-    void add(int x, int y, double solid_angle) {
-        if (columns_ > 0) x = ((x % columns_) + columns_) % columns_;
-        x = std::clamp(x, 0, width_ - 1);
-        y = std::clamp(y, 0, height_ - 1);
+    /// Of a piece of a pixel: where density is not constant by triangles, at the middles of their
+    /// sides, which is exact up to the second degree.
+    double solidAngle(const std::vector<V2d>& p) const {
+        if (source_.layout == Layout::latlong || source_.layout == Layout::mirrorBall)
+            return area(p);
+        double sum = 0;
+        double first = densityAt((p[0] + p[1]) * 0.5);
+        for (std::size_t i = 1; i + 1 < p.size(); ++i) {
+            const V2d a = p[i] - p[0], b = p[i + 1] - p[0];
+            const double outer = densityAt((p[i] + p[i + 1]) * 0.5),
+                         last = densityAt((p[0] + p[i + 1]) * 0.5);
+            sum += (a.x * b.y - a.y * b.x) / 6 * (first + outer + last);
+            first = last;
+        }
+        return sum;
+    }
+
+    void addPiece(int x, int y) {
         const auto at = owningTexel(source_.layout, width_, x, y);
         if (!at) return;
+        const double weight = solidAngle(piece_);
         const float* p = source_.image.at(at->x, at->y);
-        sum_ += V3d(p[0], p[1], p[2]) * solid_angle;
-        weight_ += solid_angle;
-    }
-
-    static double steradiansPerPixel(Layout layout, int width, int height) {
-        const double squared = static_cast<double>(width) * width;
-        switch (layout) {
-        case Layout::latlong:
-            return 2 * kPi * kPi / (static_cast<double>(width) * height);
-        case Layout::mirrorBall:
-            return 16 / squared;
-        case Layout::angular:
-            return 4 * kPi * kPi / squared;
-        default:
-            return 4 / squared; // the octahedron's square, and faces, width pixels wide
-        }
+        sum_ += V3d(p[0], p[1], p[2]) * weight;
+        weight_ += weight;
     }
 
     const Panorama& source_;
     const Panorama& result_;
+    std::vector<Sector> sectors_;
     int width_, height_;
-    int columns_;       ///< around, of lat-longs
-    double steradians_; ///< to a pixel of the source where its density is 1
-    double mean_pixel_; ///< steradians to a pixel of the source
+    double tolerance_;         ///< radians
+    std::vector<double> rows_; ///< of a lat-long: -cos(theta) of its rows' edges
     V3d sum_{0, 0, 0};
-    double weight_ = 0;
+    double weight_ = 0; ///< negative where texels run the other way around than the source's pixels
+    SpherePolygon outline_, part_;
+    std::vector<V2d> flat_, half_, strip_, piece_;
 };
 
 /// Distance between the centres of an image's pixels about (x, y), radians: of lat-longs from row

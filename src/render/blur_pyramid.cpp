@@ -13,6 +13,12 @@ V2i halfOf(const V2i& size) {
     return {(size.x + 1) / 2, (size.y + 1) / 2};
 }
 
+const Program& reduction(Passes& passes, bool of_frame, const V2i& fine, const V2i& made) {
+    return passes.program({"exposure.glsl", "resize.glsl", "reduce.frag"},
+                          {of_frame ? "SOURCE_IS_FRAME 1" : "SOURCE_IS_FRAME 0",
+                           fine == 2 * made ? "EVEN 1" : "EVEN 0"});
+}
+
 void reduce(Passes& passes, const Program& program, const Texture& fine, const V2i& fine_size,
             const V2i& fine_origin, const Target& to, const PixelRect& part) {
     setUniform(program, "n", fine_size);
@@ -24,7 +30,7 @@ void reduce(Passes& passes, const Program& program, const Texture& fine, const V
 
 Target halved(Passes& passes, const Target& fine) {
     Target made = makeTarget(halfOf(fine.size), GL_RGBA32F);
-    const Program& program = passes.program({"resize.glsl", "reduce.frag"}, {"SOURCE_IS_FRAME 0"});
+    const Program& program = reduction(passes, false, fine.size, made.size);
     reduce(passes, program, fine.texture, fine.size, {0, 0}, made, {{0, 0}, made.size});
     return made;
 }
@@ -80,8 +86,7 @@ Target reduceFrame(Passes& passes, FrameTiles& tiles, double exposure,
     const V2i frame = tiles.frameSize();
     const int limit = getInteger(GL_MAX_TEXTURE_SIZE);
     const V2i size{std::min((frame.x + 1) / 2, limit), std::min((frame.y + 1) / 2, limit)};
-    const Program& program =
-        passes.program({"exposure.glsl", "resize.glsl", "reduce.frag"}, {"SOURCE_IS_FRAME 1"});
+    const Program& program = reduction(passes, true, frame, size);
     setUniform(program, "exposure", exposure);
     setUniform(program, "threshold", threshold.value_or(0));
     Target made = makeTarget(size, GL_RGBA32F);
@@ -109,12 +114,13 @@ void addLevels(Passes& passes, const Target& base, std::span<const double> weigh
     for (std::size_t l = 1; l < weights.size(); ++l) {
         levels.push_back(halved(passes, l == 1 ? base : levels.back()));
     }
-    const Program& program = passes.program({"resize.glsl", "enlarge.frag"});
     Target carried;
     for (std::size_t l = weights.size(); l-- > 0;) {
         const Target& own = l == 0 ? base : levels[l - 1];
+        const Program& program = passes.program(
+            {"resize.glsl", "enlarge.frag"}, {carried.texture ? "COARSEST 0" : "COARSEST 1",
+                                              own.size == 2 * carried.size ? "EVEN 1" : "EVEN 0"});
         setUniform(program, "own_weight", weights[l]);
-        setUniform(program, "is_coarsest", static_cast<int>(l + 1 == weights.size()));
         glBindTextureUnit(0, own.texture.id());
         if (carried.texture) glBindTextureUnit(1, carried.texture.id());
         if (l == 0) {

@@ -293,7 +293,7 @@ void DisplayChain::State::run(Image& picture, double exposure, ToneMap tone_map,
     if (tone_map == ToneMap::retinex) surrounds = retinexSurrounds(tiles, exposure);
     if (tone_map == ToneMap::reinhardLocal) levels = localLevels(tiles, exposure);
 
-    const bool even = frame == 2 * overlay.size;
+    const bool even = frame == 2 * overlay.size || frame == 2 * surrounds.size;
     const Program& last = lastProgram(tone_map, straight, with_lens, even);
     setUniform(last, "exposure", exposure);
     setUniform(last, "frame_size", frame);

@@ -20,6 +20,10 @@ void fillRow(const float* from, int channels, int width, float* to) {
 
 Target makeTarget(const V2i& size, GLenum format) {
     Target target{size, makeTexture(GL_TEXTURE_2D, format, size.x, size.y), {}};
+    for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+        glTextureParameteri(target.texture.id(), filter, GL_LINEAR);
+    for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
+        glTextureParameteri(target.texture.id(), wrap, GL_MIRRORED_REPEAT);
     target.framebuffer = makeFramebuffer(target.texture);
     return target;
 }

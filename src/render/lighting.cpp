@@ -17,10 +17,14 @@ constexpr std::size_t kBatch = 256;
 // Memory of a batch's maps, unless they are smaller than that already.
 constexpr std::size_t kMapBytes = std::size_t{256} << 20;
 constexpr GLuint kMapUnit = 8;
+// Directional lights' maps up to that size are of 16 bits, in which a depth is 1/32 of such a map's
+// texel where the object is as deep as wide; comparisons allow for a whole one. So a batch has
+// twice as many maps.
+constexpr int kLargest16BitMap = 2048;
 // What a light adds to a pixel in one sample, as a share of all light. A code of 8 bits on the
 // ground. A surface's outline has but some of a pixel's samples, and so needs more of the lights in
-// each.
-constexpr double kGroundStep = 1.0 / 256, kSurfaceStep = 1.0 / 1024;
+// each. Lobes make much of few lights: without more of them outlines sparkle.
+constexpr double kGroundStep = 1.0 / 256, kSurfaceStep = 1.0 / 1024, kLobeStep = 1.0 / 2048;
 
 // As shaders/lights.glsl has them.
 struct LightRecord {
@@ -34,6 +38,13 @@ struct ViewRecord {
 std::array<float, 4> floats(const V3d& v, double w) {
     return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z),
             static_cast<float>(w)};
+}
+
+double stepOf(Shader shader) {
+    if (!shaderInfo(shader).lit) return kGroundStep;
+    const bool lobe =
+        hasParameter(shader, Parameter::reflectivity) || hasParameter(shader, Parameter::f0);
+    return lobe ? kLobeStep : kSurfaceStep;
 }
 
 bool isLocal(const SceneLight& light) {
@@ -132,8 +143,7 @@ void Lighting::chooseLights(const Scene& scene, const V3d& eye) {
     std::vector<SceneLight> shown = lightsThatShow(scene, turned_, similarity_, eye, counts_);
     if (!batches_.empty() && shown == lights_) return;
     lights_ = std::move(shown);
-    const bool lit = shaderInfo(scene.material.shader).lit;
-    of_samples_ = spreadLights(lights_, samples_, lit ? kSurfaceStep : kGroundStep);
+    of_samples_ = spreadLights(lights_, samples_, stepOf(scene.material.shader));
     ground_irradiance_ = V3d(0);
     for (const SceneLight& light : lights_) {
         if (!isLocal(light)) {
@@ -152,7 +162,8 @@ void Lighting::chooseLights(const Scene& scene, const V3d& eye) {
 }
 
 std::size_t Lighting::mapsAtOnce(int map_size) {
-    const auto bytes = static_cast<std::size_t>(map_size) * map_size * sizeof(float);
+    const std::size_t texel = map_size <= kLargest16BitMap ? 2 : 4;
+    const auto bytes = static_cast<std::size_t>(map_size) * map_size * texel;
     return std::clamp(kMapBytes / bytes, std::size_t{1}, kBatch);
 }
 
@@ -226,7 +237,9 @@ void Lighting::drawMaps(const Batch& batch, const DrawCaster& draw) {
         GLuint id = 0;
         glCreateTextures(GL_TEXTURE_2D_ARRAY, 1, &id);
         maps_ = Texture(id);
-        glTextureStorage3D(id, 1, GL_DEPTH_COMPONENT32F, map_size_, map_size_, wanted);
+        const GLenum format =
+            local_ || map_size_ > kLargest16BitMap ? GL_DEPTH_COMPONENT32F : GL_DEPTH_COMPONENT16;
+        glTextureStorage3D(id, 1, format, map_size_, map_size_, wanted);
         layers_ = wanted;
         const std::array<float, 4> empty{1, 1, 1, 1};
         glTextureParameteri(id, GL_TEXTURE_MIN_FILTER, GL_NEAREST);

@@ -289,6 +289,20 @@ TEST(Prefilter, SunInASceneKeepsTheErrorEverywhere) {
     }
 }
 
+/// What the error is relative to is reckoned before the work; spots of lobes smaller than a pixel
+/// are no brighter than the pixel.
+TEST(Prefilter, BoundIsKeptWherePixelsAreLargerThanTheLobe) {
+    Image probe = constant(256, 128, 0.0f);
+    for (int j = 0; j < 128; ++j)
+        for (int i = j % 5; i < 256; i += 5)
+            for (int c = 0; c < 3; ++c)
+                probe.at(i, j)[c] = 5;
+    const PrefilterResult result =
+        filter(probe, {Kernel::phong, 1e5}, Layout::faces, 16, {1e-4, false, 0});
+    EXPECT_LE(result.error_bound, 1e-4);
+    EXPECT_GT(result.band_limit, 0);
+}
+
 TEST(Prefilter, NegativePixelsKeepTheirEnergy) {
     Image probe = scene(64, 32);
     for (int i = 0; i < 64; i += 5)

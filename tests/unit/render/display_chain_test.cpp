@@ -64,8 +64,8 @@ std::vector<double> bloomedExactly(const Image& picture, const DisplayOptions& o
 
 // Wherever the light is, at whatever size, and with nothing negative or beyond it.
 TEST(Effects, NoEnergyIsLostAtOddSizesAndBorders) {
-    const std::pair<int, int> sizes[] = {{1, 1},   {1, 2},   {3, 5},  {17, 31},
-                                         {64, 64}, {101, 1}, {99, 70}};
+    const std::pair<int, int> sizes[] = {{1, 1},   {1, 2},   {3, 5},   {17, 31},
+                                         {64, 64}, {101, 1}, {99, 70}, {100, 60}};
     for (const auto& [name, set] : kSpreads) {
         for (const auto& [width, height] : sizes) {
             for (const auto& [x, y] : {std::pair(0, 0),
