@@ -202,11 +202,23 @@ PeakSum makePeakSum(const std::vector<Peak>& peaks, int width, int height, const
     return sum;
 }
 
+namespace {
+
+/// acos to 7e-5, for choices (Abramowitz and Stegun 1964, 4.4.45).
+double roughAngle(double cosine) {
+    const double x = std::min(1.0, std::abs(cosine));
+    const double angle =
+        std::sqrt(1 - x) * (1.5707288 + x * (-0.2121144 + x * (0.0742610 - 0.0187293 * x)));
+    return cosine < 0 ? kPi - angle : angle;
+}
+
+} // namespace
+
 // By Gauss points where the lobe is smooth over the pixel (2 x 2 are off by (size / scale)^4 / 4320
 // of it, 4 x 4 by (size / scale)^8 / 1.8e10), else by the pixel's edges.
 double peakMass(const PeakSum& sum, std::size_t p, const Axis& axis, const V3d& x) {
     const PeakRectangle& r = sum.rectangles[p];
-    const double t = std::acos(std::clamp(x.dot(r.coarse.directions[0]), -1.0, 1.0));
+    const double t = roughAngle(x.dot(r.coarse.directions[0]));
     if (t > 0.5 * kPi + 2 * r.size) return 0;
     const double scale = lobeScaleAt(sum.lobe, sum.width, t);
     if (r.size > 0.5 * scale) {
