@@ -51,7 +51,7 @@ void requireError(const PrefilterResult& result, double asked) {
     std::snprintf(
         text, sizeof text,
         "--max-error %g cannot be met: with harmonics up to degree %d and %d bright pixels "
-        "apart the bound of the relative RMSE is %.2g (estimate %.2g); ask for more, or "
+        "apart the bound of the relative RMSE is %.2g (estimate %.2g); allow a larger error, or "
         "use --quality reference",
         asked, result.band_limit, result.peaks_split, result.error_bound, result.error_estimate);
     throw Error(ExitCode::accuracy, text);

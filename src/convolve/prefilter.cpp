@@ -44,6 +44,8 @@ const NearRow& nearRow(double max_error) {
     return kNearRows[std::size(kNearRows) - 1];
 }
 
+/// More than this cost more than a second analysis.
+constexpr int kManyPeaks = 64;
 constexpr double kNoThreshold = std::numeric_limits<double>::infinity();
 
 class Stopwatch {
@@ -170,16 +172,15 @@ bool uses(const Plan& plan, Method method) {
     return std::ranges::any_of(plan.lobes, [&](const LobePlan& l) { return l.method == method; });
 }
 
-Engine analyseProbe(const Panorama& panorama, std::span<const PrefilterRequest> requests,
+Engine analyseProbe(const Panorama& panorama, ProbeStatistics statistics, Plan plan,
                     const PrefilterOptions& options) {
     const Stopwatch watch;
     const int threads = options.threads;
     const Image& image = panorama.image;
-    ProbeStatistics statistics = measureProbe(image, threads);
     const double scale = statistics.scale;
     Engine engine{{panorama, image, scale, statistics.negative},
                   std::move(statistics),
-                  {},
+                  std::move(plan),
                   {},
                   {},
                   {},
@@ -187,23 +188,36 @@ Engine analyseProbe(const Panorama& panorama, std::span<const PrefilterRequest> 
                   {},
                   {},
                   0};
-    if (options.reference) return engine;
-    engine.plan = makePlan(engine.statistics, requests, options.max_error, image.width, threads);
-    const Plan& plan = engine.plan;
-    if (uses(plan, Method::harmonics)) {
-        engine.peaks = splitPeaks(engine.statistics, plan.threshold);
-        engine.clamped_energy = clampedEnergy(engine.statistics, plan.threshold);
-        const RowSpectrum rows = analyseRows(image, scale, plan.threshold, plan.degree, threads);
-        engine.clamped = analyse(rows, plan.degree, threads);
+    if (uses(engine.plan, Method::harmonics)) {
+        const double threshold = engine.plan.threshold;
+        const int degree = engine.plan.degree;
+        engine.peaks = splitPeaks(engine.statistics, threshold);
+        engine.clamped_energy = clampedEnergy(engine.statistics, threshold);
+        const RowSpectrum rows = analyseRows(image, scale, threshold, degree, threads);
+        engine.clamped = analyse(rows, degree, threads);
         engine.power = powerSpectrum(*engine.clamped);
     }
-    if (const int degree = narrowDegreeOf(plan); degree >= 0) {
+    if (const int degree = narrowDegreeOf(engine.plan); degree >= 0) {
         engine.whole =
             analyse(analyseRows(image, scale, kNoThreshold, degree, threads), degree, threads);
         engine.whole_power = powerSpectrum(*engine.whole);
     }
     engine.seconds = watch.seconds();
     return engine;
+}
+
+/// Which requests would have many peaks by themselves: a wide lobe's horizon may need a thousand,
+/// which at all of a large map's texels, for a narrower lobe that needs none, take a hundred times
+/// as long as an analysis of their own.
+std::vector<bool> needManyPeaks(const ProbeStatistics& statistics,
+                                std::span<const PrefilterRequest> requests,
+                                const PrefilterOptions& options, int probe_width) {
+    std::vector<bool> many;
+    for (const PrefilterRequest& request : requests)
+        many.push_back(
+            makePlan(statistics, {&request, 1}, options.max_error, probe_width, options.threads)
+                .peaks > kManyPeaks);
+    return many;
 }
 
 PrefilterResult emptyResult(const PrefilterRequest& request) {
@@ -348,7 +362,30 @@ std::vector<PrefilterResult> prefilter(const Panorama& latlong,
                                        std::span<const PrefilterRequest> requests,
                                        const PrefilterOptions& options) {
     checkRequests(latlong.image, requests, options);
-    const Engine engine = analyseProbe(latlong, requests, options);
+    const Stopwatch watch;
+    ProbeStatistics statistics = measureProbe(latlong.image, options.threads);
+    Plan plan;
+    if (!options.reference) {
+        const int width = latlong.image.width;
+        plan = makePlan(statistics, requests, options.max_error, width, options.threads);
+        if (plan.peaks > kManyPeaks && requests.size() > 1) {
+            const std::vector<bool> many = needManyPeaks(statistics, requests, options, width);
+            std::vector<PrefilterRequest> parts[2];
+            for (std::size_t i = 0; i < requests.size(); ++i)
+                parts[many[i]].push_back(requests[i]);
+            if (!parts[0].empty() && !parts[1].empty()) {
+                std::vector<PrefilterResult> of[2] = {prefilter(latlong, parts[0], options),
+                                                      prefilter(latlong, parts[1], options)};
+                std::vector<PrefilterResult> merged;
+                std::size_t next[2] = {0, 0};
+                for (const bool part : many)
+                    merged.push_back(std::move(of[part][next[part]++]));
+                return merged;
+            }
+        }
+    }
+    const double seconds_planning = watch.seconds();
+    const Engine engine = analyseProbe(latlong, std::move(statistics), std::move(plan), options);
     std::size_t rows = 0;
     for (const PrefilterRequest& request : requests)
         rows += layoutExtent(request.layout, request.size).y;
@@ -368,7 +405,7 @@ std::vector<PrefilterResult> prefilter(const Panorama& latlong,
             result = inTwoParts(engine, request, engine.plan.lobes[i], options.max_error,
                                 options.threads);
         }
-        result.seconds_analysis = engine.seconds;
+        result.seconds_analysis = seconds_planning + engine.seconds;
         results.push_back(std::move(result));
     }
     return results;

@@ -162,7 +162,7 @@ LightSet fewestLights(const Image& latlong, const LightRequest& request, int thr
                         probe, threads);
             char text[160];
             std::snprintf(text, sizeof text,
-                          "--max-error %g cannot be met: %d lights have %.2g; ask for more",
+                          "--max-error %g cannot be met: %d lights have %.2g; allow a larger error",
                           *request.max_error, litCount(cuts), best);
             throw Error(ExitCode::accuracy, text);
         }

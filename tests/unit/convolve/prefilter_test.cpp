@@ -303,6 +303,27 @@ TEST(Prefilter, BoundIsKeptWherePixelsAreLargerThanTheLobe) {
     EXPECT_GT(result.band_limit, 0);
 }
 
+/// Phong 0 has a horizon that needs a thousand peaks; a chain's larger levels are not to pay for
+/// it.
+TEST(Prefilter, PeaksOfOneLobeAreNotThoseOfAll) {
+    Image probe = constant(256, 128, 0.0f);
+    std::mt19937 random(5);
+    std::uniform_int_distribution<int> place(0, 256 * 128 - 1);
+    for (int k = 0; k < 90; ++k)
+        for (int c = 0; c < 3; ++c)
+            probe.pixels[3 * std::size_t(place(random)) + std::size_t(c)] = float(1 + k % 7);
+    const PrefilterRequest requests[] = {{{Kernel::phong, 30}, Layout::faces, 32},
+                                         {{Kernel::phong, 0}, Layout::faces, 8}};
+    const auto together = prefilter({Layout::latlong, probe}, requests, {});
+    EXPECT_LE(together[0].peaks_split, 64);
+    EXPECT_GT(together[1].peaks_split, 64);
+    for (std::size_t i = 0; i < 2; ++i)
+        EXPECT_EQ(
+            together[i].map.image.pixels,
+            prefilter({Layout::latlong, probe}, std::span(&requests[i], 1), {})[0].map.image.pixels)
+            << i;
+}
+
 TEST(Prefilter, NegativePixelsKeepTheirEnergy) {
     Image probe = scene(64, 32);
     for (int i = 0; i < 64; i += 5)
