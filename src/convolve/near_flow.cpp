@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 namespace ibl {
 namespace {
@@ -55,7 +56,7 @@ double pairSum(const RadialTable& potential, const std::array<ArcPoint, n>& e,
 
 /// Of sin^2 t dchi about points x.
 template <std::size_t n>
-double turnSum(const RadialTable& swirl, const std::vector<TexelPoint>& points,
+double turnSum(const RadialTable& swirl, std::span<const TexelPoint> points,
                const std::array<ArcPoint, n>& f) {
     double sum = 0;
     for (const ArcPoint& y : f) {
@@ -183,10 +184,8 @@ double flowAcross(const NearField& field, const V3d& x, const Arc& f) {
     const double room = std::max(distance, 0.0) + 0.5 * field.kernel.width;
     if (length == 0) return 0;
     if (room > field.rules.three * length) {
-        double sum = 0;
-        for (const ArcPoint& y : threePoints(f))
-            sum += x.dot(y.at.cross(y.along)) * field.swirl((x - y.at).length2());
-        return sum;
+        const TexelPoint point{x, 1};
+        return turnSum(field.swirl, {&point, 1}, threePoints(f));
     }
     if (!isFlat(field, f, length)) {
         const auto [first, second] = f.halves();

@@ -14,6 +14,14 @@
 namespace ibl {
 namespace {
 
+/// Errors are measured, not derived, against the contour integrals of
+/// tests/support/contour_oracle.h, with a margin (tests/bench/convolve/narrow_bench.cpp).
+constexpr NearRules kRules[] = {
+    {3, 2, 0.75, 8e-3, 1e-3, 10, 5e-5},
+    {4, 6, 2, 1e-3, 1e-4, 20, 4e-6},
+    {6, 12, 4, 5e-4, 1e-4, 30, 1e-6},
+};
+
 /// Footprints shrunk below this of the texel's extent are taken at points.
 constexpr double kLeastOutline = 0.25;
 
@@ -194,6 +202,12 @@ void addFar(Block& block, const V3d& centre, const HalfSides& texel, double radi
 }
 
 } // namespace
+
+const NearRules& nearRules(double max_error) {
+    for (const NearRules& rules : kRules)
+        if (rules.error <= 0.6 * max_error) return rules;
+    return kRules[std::size(kRules) - 1];
+}
 
 NearField makeNearField(const NearKernel& kernel, const NearRules& rules, int probe_width,
                         int probe_height) {

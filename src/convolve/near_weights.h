@@ -42,7 +42,11 @@ struct NearRules {
     double flat;  ///< longest piece that counts as straight, radians,
     double bend;  ///< if its middle is not farther from its chord than this of its length
     double nodes; ///< of the table, to a unit of its logarithms
+    double error; ///< relative RMSE that they leave
 };
+
+/// The quickest rules that leave at most 0.6 of `max_error`, or the most exact ones.
+const NearRules& nearRules(double max_error);
 
 /// A kernel with what its weights are made from. Tables are of the squared chord.
 struct NearField {

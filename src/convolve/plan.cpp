@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace ibl {
 namespace {
@@ -20,6 +21,8 @@ constexpr int kMostDegreeOfNarrow = 1536;
 /// Degree of Method::narrow. With 768 or 1024 the near part reaches less far, but takes the same
 /// time within a tenth, for twice and three times the memory.
 constexpr int kNarrowDegree = 512;
+/// More peaks than these cost more than a second analysis.
+constexpr int kManyPeaks = 64;
 /// Coefficients known beyond it, from which the tail's envelope is read.
 constexpr int kTailBands = 64;
 
@@ -111,9 +114,13 @@ double allowedNorm(const ProbeStatistics& probe, const PrefilterRequest& request
     return 0.5 * max_error * referenceNorm(probe, k) / roomFor(texels);
 }
 
-Plan makePlan(const ProbeStatistics& probe, std::span<const PrefilterRequest> requests,
-              double max_error, int probe_width, int threads) {
+namespace {
+
+Plan planTogether(const ProbeStatistics& probe, std::span<const PrefilterRequest> requests,
+                  double max_error, int probe_width, int threads) {
     Plan plan;
+    plan.requests.resize(requests.size());
+    std::iota(plan.requests.begin(), plan.requests.end(), std::size_t{0});
     plan.lobes.resize(requests.size());
     std::vector<double> allowed(requests.size());
     parallelFor(requests.size(), threads, [&](std::size_t i) {
@@ -160,6 +167,31 @@ Plan makePlan(const ProbeStatistics& probe, std::span<const PrefilterRequest> re
         }
     }
     return plan;
+}
+
+} // namespace
+
+std::vector<Plan> makePlans(const ProbeStatistics& probe,
+                            std::span<const PrefilterRequest> requests, double max_error,
+                            int probe_width, int threads) {
+    const auto together = [&](std::span<const PrefilterRequest> some) {
+        return planTogether(probe, some, max_error, probe_width, threads);
+    };
+    const Plan all = together(requests);
+    if (all.peaks <= kManyPeaks) return {all};
+    std::vector<std::size_t> which[2]; // by whether one needs many peaks by itself
+    for (std::size_t i = 0; i < requests.size(); ++i)
+        which[together(requests.subspan(i, 1)).peaks > kManyPeaks].push_back(i);
+    if (which[0].empty() || which[1].empty()) return {all};
+    std::vector<Plan> plans;
+    for (const std::vector<std::size_t>& indices : which) {
+        std::vector<PrefilterRequest> some;
+        for (const std::size_t i : indices)
+            some.push_back(requests[i]);
+        plans.push_back(together(some));
+        plans.back().requests = indices;
+    }
+    return plans;
 }
 
 } // namespace ibl

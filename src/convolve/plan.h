@@ -32,15 +32,21 @@ struct LobePlan {
     double allowed = 0;    ///< for Method::narrow: the largest coefficient that may be left out
 };
 
+/// For requests that share an analysis.
 struct Plan {
-    double threshold = 0; ///< for the analysis that Method::harmonics uses
+    std::vector<std::size_t> requests; ///< which they are
+    double threshold = 0;              ///< for the analysis that Method::harmonics uses
     int peaks = 0;
-    int degree = 0; ///< of that analysis
-    std::vector<LobePlan> lobes;
+    int degree = 0;              ///< of that analysis
+    std::vector<LobePlan> lobes; ///< of each of them
 };
 
-Plan makePlan(const ProbeStatistics& probe, std::span<const PrefilterRequest> requests,
-              double max_error, int probe_width, int threads);
+/// One for all requests, or two: a wide lobe's horizon may need a thousand peaks, which at all of a
+/// large map's texels, for a narrower lobe that needs none, take a hundred times as long as an
+/// analysis of their own.
+std::vector<Plan> makePlans(const ProbeStatistics& probe,
+                            std::span<const PrefilterRequest> requests, double max_error,
+                            int probe_width, int threads);
 
 /// Least degree, up to `most`, whose truncation bound is at most `allowed`; `energy_beyond(B)` is
 /// the probe's energy beyond degree B. `most` + 1 when there is none.

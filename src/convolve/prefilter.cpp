@@ -24,28 +24,6 @@
 namespace ibl {
 namespace {
 
-/// How exactly the near kernel's weights are made, and the relative RMSE that they leave: measured,
-/// not derived, against the contour integrals of tests/support/contour_oracle.h, with a margin
-/// (tests/bench/convolve/narrow_bench.cpp).
-struct NearRow {
-    NearRules rules;
-    double error;
-};
-
-constexpr NearRow kNearRows[] = {
-    {{3, 2, 0.75, 8e-3, 1e-3, 10}, 5e-5},
-    {{4, 6, 2, 1e-3, 1e-4, 20}, 4e-6},
-    {{6, 12, 4, 5e-4, 1e-4, 30}, 1e-6},
-};
-
-const NearRow& nearRow(double max_error) {
-    for (const NearRow& row : kNearRows)
-        if (row.error <= 0.6 * max_error) return row;
-    return kNearRows[std::size(kNearRows) - 1];
-}
-
-/// More than this cost more than a second analysis.
-constexpr int kManyPeaks = 64;
 constexpr double kNoThreshold = std::numeric_limits<double>::infinity();
 
 class Stopwatch {
@@ -206,20 +184,6 @@ Engine analyseProbe(const Panorama& panorama, ProbeStatistics statistics, Plan p
     return engine;
 }
 
-/// Which requests would have many peaks by themselves: a wide lobe's horizon may need a thousand,
-/// which at all of a large map's texels, for a narrower lobe that needs none, take a hundred times
-/// as long as an analysis of their own.
-std::vector<bool> needManyPeaks(const ProbeStatistics& statistics,
-                                std::span<const PrefilterRequest> requests,
-                                const PrefilterOptions& options, int probe_width) {
-    std::vector<bool> many;
-    for (const PrefilterRequest& request : requests)
-        many.push_back(
-            makePlan(statistics, {&request, 1}, options.max_error, probe_width, options.threads)
-                .peaks > kManyPeaks);
-    return many;
-}
-
 PrefilterResult emptyResult(const PrefilterRequest& request) {
     PrefilterResult result;
     const V2i extent = layoutExtent(request.layout, request.size);
@@ -246,15 +210,15 @@ PrefilterResult directSum(const Engine& engine, const PrefilterRequest& request,
     const Image& probe = engine.probe.image;
     const Footprint footprint = footprintOf(request.lobe, texelAngle(request), kAnyDegree);
     if (footprint.scale > 0) {
-        const NearRow& row = kNearRows[std::size(kNearRows) - 1];
+        const NearRules& rules = nearRules(0);
         const NearKernel whole(request.lobe, 0, 0);
-        result.map.image = nearMap(engine.probe.panorama,
-                                   makeNearField(whole, row.rules, probe.width, probe.height),
-                                   request, footprint, threads, &progress);
+        result.map.image =
+            nearMap(engine.probe.panorama, makeNearField(whole, rules, probe.width, probe.height),
+                    request, footprint, threads, &progress);
         if (!engine.probe.negative)
             for (float& p : result.map.image.pixels)
                 p = std::max(0.0f, p);
-        result.error_bound = result.error_estimate = row.error;
+        result.error_bound = result.error_estimate = rules.error;
     } else {
         const DirectSum direct = makeDirectSum(request.lobe, probe, engine.probe.scale);
         Ingredients parts;
@@ -327,8 +291,8 @@ PrefilterResult inTwoParts(const Engine& engine, const PrefilterRequest& request
     // Beside a sun pixels' masses need one point more than footprintOf's, which are for lobes.
     Footprint near_footprint = footprintOf(request.lobe, texel, kAnyDegree);
     if (near_footprint.scale > 0) ++near_footprint.samples;
-    const NearRow& row = nearRow(max_error);
-    const NearField near_field = makeNearField(split.near, row.rules, probe.width, probe.height);
+    const NearRules& rules = nearRules(max_error);
+    const NearField near_field = makeNearField(split.near, rules, probe.width, probe.height);
     const Image near = nearMap(engine.probe.panorama, near_field, request, near_footprint, threads);
     parts.near = &near;
     MapNorm norm;
@@ -343,10 +307,22 @@ PrefilterResult inTwoParts(const Engine& engine, const PrefilterRequest& request
         result.error_bound = far.bound;
         result.error_estimate = far.estimate;
     }
-    result.error_bound = std::hypot(result.error_bound, row.error);
-    result.error_estimate = std::hypot(result.error_estimate, row.error / 3);
+    result.error_bound = std::hypot(result.error_bound, rules.error);
+    result.error_estimate = std::hypot(result.error_estimate, rules.error / 3);
     result.seconds_spatial = watch.seconds() - result.seconds_synthesis;
     return result;
+}
+
+PrefilterResult byMethod(const Engine& engine, const PrefilterRequest& request,
+                         const LobePlan& lobe, const PrefilterOptions& options) {
+    switch (lobe.method) {
+    case Method::area:
+        return areaFiltered(engine, request, options.threads);
+    case Method::harmonics:
+        return byHarmonics(engine, request, lobe, options.max_error, options.threads);
+    default:
+        return inTwoParts(engine, request, lobe, options.max_error, options.threads);
+    }
 }
 
 } // namespace
@@ -363,50 +339,32 @@ std::vector<PrefilterResult> prefilter(const Panorama& latlong,
                                        const PrefilterOptions& options) {
     checkRequests(latlong.image, requests, options);
     const Stopwatch watch;
-    ProbeStatistics statistics = measureProbe(latlong.image, options.threads);
-    Plan plan;
-    if (!options.reference) {
-        const int width = latlong.image.width;
-        plan = makePlan(statistics, requests, options.max_error, width, options.threads);
-        if (plan.peaks > kManyPeaks && requests.size() > 1) {
-            const std::vector<bool> many = needManyPeaks(statistics, requests, options, width);
-            std::vector<PrefilterRequest> parts[2];
-            for (std::size_t i = 0; i < requests.size(); ++i)
-                parts[many[i]].push_back(requests[i]);
-            if (!parts[0].empty() && !parts[1].empty()) {
-                std::vector<PrefilterResult> of[2] = {prefilter(latlong, parts[0], options),
-                                                      prefilter(latlong, parts[1], options)};
-                std::vector<PrefilterResult> merged;
-                std::size_t next[2] = {0, 0};
-                for (const bool part : many)
-                    merged.push_back(std::move(of[part][next[part]++]));
-                return merged;
-            }
-        }
-    }
-    const double seconds_planning = watch.seconds();
-    const Engine engine = analyseProbe(latlong, std::move(statistics), std::move(plan), options);
+    const ProbeStatistics statistics = measureProbe(latlong.image, options.threads);
+    const double seconds_measuring = watch.seconds();
     std::size_t rows = 0;
     for (const PrefilterRequest& request : requests)
         rows += layoutExtent(request.layout, request.size).y;
     Progress progress(options.progress, rows);
-    std::vector<PrefilterResult> results;
-    for (std::size_t i = 0; i < requests.size(); ++i) {
-        const PrefilterRequest& request = requests[i];
-        PrefilterResult result;
-        if (isMirror(request.lobe)) {
-            result = areaFiltered(engine, request, options.threads);
-        } else if (options.reference) {
-            result = directSum(engine, request, options.threads, progress);
-        } else if (engine.plan.lobes[i].method == Method::harmonics) {
-            result = byHarmonics(engine, request, engine.plan.lobes[i], options.max_error,
-                                 options.threads);
-        } else {
-            result = inTwoParts(engine, request, engine.plan.lobes[i], options.max_error,
-                                options.threads);
+    std::vector<PrefilterResult> results(requests.size());
+    if (options.reference) {
+        const Engine engine = analyseProbe(latlong, statistics, {}, options);
+        for (std::size_t i = 0; i < requests.size(); ++i) {
+            results[i] = isMirror(requests[i].lobe)
+                             ? areaFiltered(engine, requests[i], options.threads)
+                             : directSum(engine, requests[i], options.threads, progress);
+            results[i].seconds_analysis = seconds_measuring;
         }
-        result.seconds_analysis = seconds_planning + engine.seconds;
-        results.push_back(std::move(result));
+        return results;
+    }
+    for (const Plan& plan :
+         makePlans(statistics, requests, options.max_error, latlong.image.width, options.threads)) {
+        const Engine engine = analyseProbe(latlong, statistics, plan, options);
+        for (std::size_t k = 0; k < plan.lobes.size(); ++k) {
+            const PrefilterRequest& request = requests[plan.requests[k]];
+            PrefilterResult& result = results[plan.requests[k]];
+            result = byMethod(engine, request, plan.lobes[k], options);
+            result.seconds_analysis = seconds_measuring + engine.seconds;
+        }
     }
     return results;
 }

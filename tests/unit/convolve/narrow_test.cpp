@@ -217,8 +217,7 @@ TEST(Narrow, WeightsOfPixelsAreTheKernelsMeans) {
         const Lobe lobe{Kernel::ggx, roughness};
         const std::vector<double> k = zonalCoefficients(lobe, 576);
         const LobeSplit split = splitLobe(lobe, k, 512, 1e-5);
-        const NearField field =
-            makeNearField(split.near, {4, 6, 2, 1e-3, 1e-4, 20}, kWidth, kHeight);
+        const NearField field = makeNearField(split.near, nearRules(1e-5), kWidth, kHeight);
         for (const int size : {64, 256}) { // footprints whole, and for 0.05 at 256 shrunk
             const MapExtent map{Layout::faces, size, 6 * size, 0.5 * kPi / size};
             const Footprint footprint = footprintOf(lobe, map.texel, kAnyDegree);
