@@ -16,13 +16,7 @@ namespace {
 using Words = std::vector<std::string>;
 
 Image toned(const Scratch& scratch, Words words, const std::string& out = "o.exr") {
-    words.insert(words.begin(), "tonemap");
-    words.insert(words.end(), {"-o", out});
-    const ToolResult result = runTool(words, scratch.path());
-    EXPECT_EQ(result.exit_code, 0) << result.err;
-    ReadOptions options;
-    options.keep_alpha = true;
-    return readImage((scratch / out).string(), options).image;
+    return pictureOf(scratch, "tonemap", std::move(words), out);
 }
 
 double luminance(const float* p) {

@@ -1,5 +1,7 @@
 #include "cli/tool.h"
 
+#include "image/read.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -110,6 +112,17 @@ void writeFile(const std::filesystem::path& path, const std::string& bytes) {
 
 std::string testData(const std::string& name) {
     return std::string(IBLTOOL_SOURCE_DIR) + "/testdata/" + name;
+}
+
+Image pictureOf(const Scratch& scratch, const std::string& command, std::vector<std::string> words,
+                const std::string& out) {
+    words.insert(words.begin(), command);
+    words.insert(words.end(), {"-o", out});
+    const ToolResult result = runTool(words, scratch.path());
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    ReadOptions options;
+    options.keep_alpha = true;
+    return readImage((scratch / out).string(), options).image;
 }
 
 void expectRefused(const ToolResult& result, int exit_code, const std::string& said) {

@@ -1,6 +1,8 @@
 // Runs the tool as a user does and tells what it said.
 #pragma once
 
+#include "image/image.h"
+
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -47,6 +49,10 @@ void writeFile(const std::filesystem::path& path, const std::string& bytes);
 
 /// A file of the tree's testdata.
 std::string testData(const std::string& name);
+
+/// The picture that `ibltool COMMAND WORDS -o OUT` makes, with alpha if it has some.
+Image pictureOf(const Scratch& scratch, const std::string& command, std::vector<std::string> words,
+                const std::string& out);
 
 /// Expects a refusal: the exit code, exactly one line on standard error that begins with
 /// "ibltool: " and contains `said`, and nothing on standard output.
