@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <mutex>
+#include <set>
+#include <thread>
 #include <vector>
 
 namespace ibl {
@@ -45,6 +48,34 @@ TEST(Parallel, RethrowsTheBodysException) {
                                  }),
                      Error);
     }
+}
+
+TEST(Parallel, LoopsWithinLoopsAndBesideThem) {
+    std::vector<std::atomic<int>> visits(2 * 50 * 30);
+    const auto loops = [&](std::size_t first) {
+        for (int round = 0; round < 20; ++round) {
+            parallelFor(50, 2 + round % 3, [&](std::size_t i) {
+                parallelFor(30, 3, [&](std::size_t j) { ++visits[first + 30 * i + j]; });
+            });
+        }
+    };
+    {
+        const std::jthread other(loops, visits.size() / 2);
+        loops(0);
+    }
+    for (const auto& n : visits)
+        EXPECT_EQ(n, 20);
+}
+
+TEST(Parallel, AtMostAsManyThreadsAsAsked) {
+    parallelFor(100, 8, [](std::size_t) {}); // makes seven threads, which wait for other loops too
+    std::mutex mutex;
+    std::set<std::thread::id> ids;
+    parallelFor(200, 2, [&](std::size_t) {
+        const std::lock_guard lock(mutex);
+        ids.insert(std::this_thread::get_id());
+    });
+    EXPECT_LE(ids.size(), 2u);
 }
 
 TEST(Parallel, NothingToDo) {
