@@ -128,8 +128,10 @@ double flowInPlane(const NearField& field, const Segment& e, const Segment& f) {
     return sum * e.along.dot(f.along);
 }
 
-/// Whether it may be taken as straight.
+/// Whether it may be taken as straight. Where a quadratic turns round, its halves are as bent as
+/// it: what is so short does not matter.
 bool isFlat(const NearField& field, const Arc& arc, double length) {
+    if (length < 1e-6) return true;
     return length <= field.rules.flat && arc.sagitta() <= field.rules.bend * length;
 }
 

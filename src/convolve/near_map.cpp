@@ -122,8 +122,8 @@ Image nearMap(const Panorama& probe, const NearField& field, const PrefilterRequ
     for (std::size_t i = 0; i < texels.size(); ++i)
         if (i == 0 || texels[i].key != texels[i - 1].key) first.push_back(i);
     first.push_back(texels.size());
-    Image result(size.x, size.y);
-    std::ranges::fill(result.pixels, 0.0f);
+    Panorama result{request.layout, Image(size.x, size.y)};
+    std::ranges::fill(result.image.pixels, 0.0f);
     constexpr std::size_t kAtOnce = 16;
     std::atomic<std::size_t> finished = 0;
     const std::size_t groups = first.size() - 1, rows = static_cast<std::size_t>(map.height);
@@ -137,14 +137,15 @@ Image nearMap(const Panorama& probe, const NearField& field, const PrefilterRequ
                 const V3d value = weightedSum(
                     probe.image, weights, moveOf(map, t.x, t.y, field.width), area.at(t.x, t.y));
                 for (int c = 0; c < 3; ++c)
-                    result.at(t.x, t.y)[c] = static_cast<float>(value[c]);
+                    result.image.at(t.x, t.y)[c] = static_cast<float>(value[c]);
             }
             const std::size_t at = finished++;
             for (std::size_t row = at * rows / groups; row < (at + 1) * rows / groups; ++row)
                 if (progress) progress->step();
         }
     });
-    return result;
+    mergeBorder(result);
+    return std::move(result.image);
 }
 
 } // namespace ibl

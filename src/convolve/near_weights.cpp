@@ -1,5 +1,6 @@
 #include "convolve/near_weights.h"
 
+#include "convolve/cut_texels.h"
 #include "convolve/gauss.h"
 #include "convolve/near_edges.h"
 #include "convolve/near_flow.h"
@@ -28,15 +29,22 @@ constexpr double kLeastOutline = 0.25;
 /// The outline of the texel shrunk to `scale`.
 std::vector<Arc> outlineOf(const MapExtent& map, int x, int y, double scale) {
     std::vector<Arc> outline;
+    if (isBallMap(map.layout)) {
+        for (const MapRectangle& own : ownRectangles(map.layout, map.width, x, y, scale))
+            addCutOutline(map.layout, own, kLongest, outline);
+        return outline;
+    }
+    const auto [low, high] = ownPart(map.layout, map.width, map.height, x, y);
+    const V2d corners[4] = {low, {high.x, low.y}, high, {low.x, high.y}};
     for (int side = 0; side < 4; ++side) {
+        const V2d begin = corners[side], step = corners[(side + 1) % 4] - begin;
         const auto place = [&](double at) {
-            const V2d offset[4] = {{at, -0.5}, {0.5, at}, {-at, 0.5}, {-0.5, -at}};
-            return texelPlace(map, x, y, offset[side] * scale);
+            return texelPlace(map, x, y, (begin + step * (at + 0.5)) * scale);
         };
         V3d from = place(-0.5);
         const double length = Arc{from, place(0), place(0.5)}.length();
-        // Sides of square maps' texels may have a fold within them.
-        const int least = isSquareMap(map.layout) ? 4 : 1;
+        // Sides of the octahedral map's texels may have a fold in their middle.
+        const int least = map.layout == Layout::octahedral ? 4 : 1;
         const int pieces = std::max(least, static_cast<int>(std::ceil(length / kLongest)));
         for (int k = 0; k < pieces; ++k) {
             const V3d to = place(static_cast<double>(k + 1) / pieces - 0.5);
@@ -266,22 +274,34 @@ NearField makeNearField(const NearKernel& kernel, const NearRules& rules, int pr
 }
 
 NearWeights nearWeights(const NearField& field, const MapExtent& map, int x, int y,
-                        const Footprint& footprint) {
+                        const Footprint& of_map) {
     NearWeights weights;
+    const Footprint footprint =
+        isBallMap(map.layout) ? footprintOfTexel(of_map, map.layout, map.width, x, y) : of_map;
     const double scale = footprint.scale;
-    const V3d centre = texelPlace(map, x, y, V2d(0));
+    const auto [low, high] = ownPart(map.layout, map.width, map.height, x, y);
+    const V2d middle = (low + high) * (0.5 * scale), half = (high - low) * (0.5 * scale);
+    const V3d centre = texelPlace(map, x, y, middle);
     const std::vector<Arc> outline = outlineOf(map, x, y, scale);
+    if (outline.empty()) { // the whole sphere in one texel
+        weights.area = field.kernel.mass;
+        return weights;
+    }
     double radius = 0;
     for (const Arc& e : outline)
         radius = std::max({radius, (e.a - centre).length(), (e.m - centre).length()});
     setBlock(field, outline, centre, weights);
     Block block{field, weights, {}};
-    const auto halfSide = [&](V2d offset) { return texelPlace(map, x, y, offset) - centre; };
-    addFar(block, centre, {halfSide(V2d(0.5 * scale, 0)), halfSide(V2d(0, 0.5 * scale))}, radius);
+    const auto side = [&](V2d offset) { return texelPlace(map, x, y, middle + offset) - centre; };
+    addFar(block, centre, {side(V2d(half.x, 0)), side(V2d(0, half.y))}, radius);
     if (scale >= kLeastOutline) {
         const double own = solidAngle(outline, centre);
-        // The area filter's texels are exact.
-        const double whole = texelSolidAngle(map.layout, map.width, map.height, x, y);
+        // The area filter's texels are exact;
+        // of OpenEXR's lat-long the first and the last in a row are halves of one.
+        const bool half_of_one =
+            map.layout == Layout::exrLatlong && map.width > 1 && (x == 0 || x == map.width - 1);
+        const double whole =
+            texelSolidAngle(map.layout, map.width, map.height, x, y) * (half_of_one ? 2 : 1);
         const Texel texel{centre,
                           radius,
                           outline,
@@ -290,7 +310,8 @@ NearWeights nearWeights(const NearField& field, const MapExtent& map, int x, int
                           pointsOf(map, x, y, {scale, 3})};
         addTexel(block, texel, scale < 1 ? Potential::withArea : Potential::withoutArea);
     } else {
-        addPoints(block, pointsOf(map, x, y, footprint));
+        // Beside a sun pixels' masses need one point more than footprintOf's, which are for lobes.
+        addPoints(block, pointsOf(map, x, y, {scale, footprint.samples + (scale > 0 ? 1 : 0)}));
     }
     if (scale < 1) addEven(block, field.kernel.mass);
     double sum = 0;

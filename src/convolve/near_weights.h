@@ -75,6 +75,6 @@ struct NearWeights {
 
 /// Of texel (x, y) of a map. The weights and `area` sum to the kernel's mass.
 NearWeights nearWeights(const NearField& field, const MapExtent& map, int x, int y,
-                        const Footprint& footprint);
+                        const Footprint& of_map);
 
 } // namespace ibl

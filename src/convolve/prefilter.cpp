@@ -97,10 +97,8 @@ void fillRow(const Probe& probe, const PrefilterRequest& request, const Footprin
         float* texel = out + std::size_t{3} * points.column[t];
         for (int c = 0; c < 3; ++c) {
             double value = 0;
-            for (int s = 0; s < points.per_texel; ++s) {
-                const std::size_t i = t * points.per_texel + s;
+            for (std::size_t i = points.first[t]; i < points.first[t + 1]; ++i)
                 value += points.share[i] * values[3 * i + c];
-            }
             value /= probe.scale;
             if (parts.near) value += parts.near->at(points.column[t], y)[c];
             // Rounding and the truncated tails may leave a little below zero beside a sun; a mean
@@ -113,15 +111,16 @@ void fillRow(const Probe& probe, const PrefilterRequest& request, const Footprin
 }
 
 void fillMap(const Probe& probe, const PrefilterRequest& request, const Footprint& footprint,
-             const Ingredients& parts, int threads, Image& map, MapNorm& norm,
+             const Ingredients& parts, int threads, Panorama& map, MapNorm& norm,
              Progress* progress = nullptr) {
-    std::vector<MapNorm> rows(map.height);
-    parallelFor(map.height, threads, [&](std::size_t y) {
-        fillRow(probe, request, footprint, parts, static_cast<int>(y), map, rows[y]);
+    std::vector<MapNorm> rows(map.image.height);
+    parallelFor(rows.size(), threads, [&](std::size_t y) {
+        fillRow(probe, request, footprint, parts, static_cast<int>(y), map.image, rows[y]);
         if (progress) progress->step();
     });
     for (const MapNorm& row : rows)
         norm.add(row);
+    mergeBorder(map);
 }
 
 /// All that the requests share.
@@ -224,8 +223,7 @@ PrefilterResult directSum(const Engine& engine, const PrefilterRequest& request,
         Ingredients parts;
         parts.direct = &direct;
         MapNorm norm;
-        fillMap(engine.probe, request, footprint, parts, threads, result.map.image, norm,
-                &progress);
+        fillMap(engine.probe, request, footprint, parts, threads, result.map, norm, &progress);
         result.error_bound = result.error_estimate = kFloatRounding;
         result.worst_bound = kFloatRounding;
     }
@@ -260,7 +258,7 @@ PrefilterResult byHarmonics(const Engine& engine, const PrefilterRequest& reques
                                       engine.probe.image.height, request.lobe);
     parts.peaks = &peaks;
     MapNorm norm;
-    fillMap(engine.probe, request, footprint, parts, threads, result.map.image, norm);
+    fillMap(engine.probe, request, footprint, parts, threads, result.map, norm);
     result.band_limit = degree;
     result.peaks_split = static_cast<int>(engine.peaks.size());
     const SpectrumError error = spectrumError(lobe.k, engine.power, engine.clamped_energy, degree);
@@ -288,16 +286,14 @@ PrefilterResult inTwoParts(const Engine& engine, const PrefilterRequest& request
         parts.field = &field;
     }
     result.seconds_synthesis = watch.seconds();
-    // Beside a sun pixels' masses need one point more than footprintOf's, which are for lobes.
-    Footprint near_footprint = footprintOf(request.lobe, texel, kAnyDegree);
-    if (near_footprint.scale > 0) ++near_footprint.samples;
+    const Footprint near_footprint = footprintOf(request.lobe, texel, kAnyDegree);
     const NearRules& rules = nearRules(max_error);
     const NearField near_field = makeNearField(split.near, rules, probe.width, probe.height);
     const Image near = nearMap(engine.probe.panorama, near_field, request, near_footprint, threads);
     parts.near = &near;
     MapNorm norm;
     fillMap(engine.probe, request, footprintOf(request.lobe, texel, split.degree), parts, threads,
-            result.map.image, norm);
+            result.map, norm);
     result.band_limit = split.degree;
     if (split.degree > 0) {
         const SpectrumError error =

@@ -1,5 +1,6 @@
 #include "convolve/texels.h"
 
+#include "convolve/cut_texels.h"
 #include "convolve/gauss.h"
 #include "convolve/peaks.h"
 #include "panorama/conventions.h"
@@ -13,13 +14,14 @@
 namespace ibl {
 namespace {
 
-/// Direction of the point at (dx, dy) from a texel's centre, drawn towards the centre where it lies
-/// outside a ball map's disc.
-V3d directionIn(Layout layout, int width, int height, V2d centre, V2d offset) {
-    for (;; offset *= 0.8) {
-        const V2d p = centre + offset;
-        if (const auto d = texelDirection(layout, width, height, p.x, p.y)) return *d;
+/// Direction of a place in the image; beyond a ball map's rim that of the rim, beyond the seam of
+/// OpenEXR's lat-long, on which both its first and its last texels lie, on the other side.
+V3d directionAt(Layout layout, int width, int height, V2d place) {
+    if (layout == Layout::exrLatlong && width > 1) {
+        if (place.x < 0.5) place.x += width - 1;
+        if (place.x > width - 0.5) place.x -= width - 1;
     }
+    return texelDirection(layout, width, height, place.x, place.y).value_or(V3d(0, 0, -1));
 }
 
 /// A rule of at least n points on [-1, 1]: Gauss's, for many points in equal parts.
@@ -37,6 +39,18 @@ GaussRule footprintRule(int n) {
     return rule;
 }
 
+Footprint footprintFor(double lobe_diameter, double texel, int degree) {
+    Footprint footprint{std::clamp(2 - lobe_diameter / texel, 0.0, 1.0), 1, texel, lobe_diameter,
+                        degree};
+    if (footprint.scale > 0) {
+        const double extent = footprint.scale * texel;
+        const double for_lobe = 1 + 4 * extent / lobe_diameter;
+        const double for_waves = 2 + 1.2 * extent * degree / kPi; // Gauss: pi points a wave
+        footprint.samples = std::max(2, static_cast<int>(std::ceil(std::min(for_lobe, for_waves))));
+    }
+    return footprint;
+}
+
 /// Appends the points of texel (x, y), which looks along `centre`, by the rule: the texel is a
 /// rectangle in the image, so a product of Gauss rules has the highest order.
 void addTexel(Layout layout, int width, int height, int x, int y, const V3d& centre,
@@ -50,18 +64,29 @@ void addTexel(Layout layout, int width, int height, int x, int y, const V3d& cen
     }
     const std::size_t first = points.u.size();
     double total = 0;
-    for (std::size_t b = 0; b < rule.nodes.size(); ++b) {
-        for (std::size_t a = 0; a < rule.nodes.size(); ++a) {
-            const double dx = 0.5 * footprint_scale * rule.nodes[a];
-            const double dy = 0.5 * footprint_scale * rule.nodes[b];
-            const V3d d = directionIn(layout, width, height, {x + 0.5, y + 0.5}, {dx, dy});
-            const V2d p = latlongPoint(d);
-            points.u.push_back(p.x);
-            points.v.push_back(p.y);
-            // At a pole that is a texel's centre the density is 0.
-            points.share.push_back(rule.weights[a] * rule.weights[b] *
-                                   std::max(1e-300, solidAngleDensity(layout, d)));
-            total += points.share.back();
+    const auto add = [&](const V3d& d, double area) {
+        const V2d p = latlongPoint(d);
+        points.u.push_back(p.x);
+        points.v.push_back(p.y);
+        // At a pole that is a texel's centre the density is 0.
+        points.share.push_back(area * std::max(1e-300, solidAngleDensity(layout, d)));
+        total += points.share.back();
+    };
+    if (isBallMap(layout)) {
+        std::vector<MapPoint> within;
+        for (const MapRectangle& own : ownRectangles(layout, width, x, y, footprint_scale))
+            addCutPoints(layout, own, rule, within);
+        for (const MapPoint& point : within)
+            add(ballDirection(layout, point.at), point.area);
+    } else {
+        const TexelPart own = ownPart(layout, width, height, x, y);
+        for (std::size_t b = 0; b < rule.nodes.size(); ++b) {
+            for (std::size_t a = 0; a < rule.nodes.size(); ++a) {
+                const V2d t(0.5 * (1 + rule.nodes[a]), 0.5 * (1 + rule.nodes[b]));
+                const V2d offset = (own.low + (own.high - own.low) * t) * footprint_scale;
+                add(directionAt(layout, width, height, V2d(x + 0.5, y + 0.5) + offset),
+                    rule.weights[a] * rule.weights[b]);
+            }
         }
     }
     for (std::size_t i = first; i < points.share.size(); ++i)
@@ -70,6 +95,18 @@ void addTexel(Layout layout, int width, int height, int x, int y, const V3d& cen
 
 } // namespace
 
+TexelPart ownPart(Layout layout, int width, int height, int x, int y) {
+    TexelPart part{V2d(-0.5), V2d(0.5)};
+    if (layout != Layout::exrLatlong && layout != Layout::exrCube) return part;
+    const bool cube = layout == Layout::exrCube;
+    const int rows = cube ? width : height;
+    if (cube && width > 1 && x == 0) part.low.x = 0;
+    if (cube && width > 1 && x == width - 1) part.high.x = 0;
+    if (rows > 1 && y % rows == 0) part.low.y = 0;
+    if (rows > 1 && y % rows == rows - 1) part.high.y = 0;
+    return part;
+}
+
 double texelAngle(const PrefilterRequest& request) {
     if (isSquareMap(request.layout)) return std::sqrt(4 * kPi / texelCount(request));
     const bool rows = request.layout == Layout::latlong || request.layout == Layout::exrLatlong;
@@ -77,16 +114,17 @@ double texelAngle(const PrefilterRequest& request) {
 }
 
 Footprint footprintOf(const Lobe& lobe, double texel, int degree) {
-    const double diameter = 2 * lobeWidth(lobe);
-    Footprint footprint;
-    footprint.scale = std::clamp(2 - diameter / texel, 0.0, 1.0);
-    if (footprint.scale > 0) {
-        const double extent = footprint.scale * texel;
-        const double for_lobe = 1 + 4 * extent / diameter;
-        const double for_waves = 2 + 1.2 * extent * degree / kPi; // Gauss: pi points a wave
-        footprint.samples = std::max(2, static_cast<int>(std::ceil(std::min(for_lobe, for_waves))));
-    }
-    return footprint;
+    return footprintFor(2 * lobeWidth(lobe), texel, degree);
+}
+
+Footprint footprintOfTexel(const Footprint& of_map, Layout layout, int size, int x, int y) {
+    const double rho = std::hypot((2.0 * x + 1) / size - 1, (2.0 * y + 1) / size - 1);
+    // Of the angle from +Z.
+    const auto angle = [layout](double r) {
+        return layout == Layout::mirrorBall ? 2 * std::asin(std::min(r, 1.0)) : kPi * r;
+    };
+    const double extent = angle(std::min(1.0, rho + 1.0 / size)) - angle(rho - 1.0 / size);
+    return footprintFor(of_map.lobe_diameter, std::max(extent, of_map.texel), of_map.degree);
 }
 
 double texelCount(const PrefilterRequest& request) {
@@ -101,13 +139,13 @@ V3d texelPlace(const MapExtent& map, int x, int y, V2d offset) {
     // A face's edge in the image is as well the next one's.
     constexpr double kWithin = 1 - 1e-10;
     const V3d d =
-        directionIn(map.layout, map.width, map.height, {x + 0.5, y + 0.5}, offset * kWithin);
+        directionAt(map.layout, map.width, map.height, V2d(x + 0.5, y + 0.5) + offset * kWithin);
     return {-d.z, d.x, d.y};
 }
 
 RowPoints texelPoints(const MapExtent& map, int x, int y, const Footprint& footprint) {
     RowPoints points;
-    const V3d centre = directionIn(map.layout, map.width, map.height, {x + 0.5, y + 0.5}, V2d(0));
+    const V3d centre = directionAt(map.layout, map.width, map.height, {x + 0.5, y + 0.5});
     addTexel(map.layout, map.width, map.height, x, y, centre, footprint.scale,
              footprintRule(footprint.samples), points);
     return points;
@@ -116,14 +154,21 @@ RowPoints texelPoints(const MapExtent& map, int x, int y, const Footprint& footp
 RowPoints rowPoints(Layout layout, int width, int height, int y, const Footprint& footprint) {
     RowPoints points;
     const GaussRule rule = footprintRule(footprint.samples);
-    points.per_texel = static_cast<int>(rule.nodes.size() * rule.nodes.size());
     for (int x = 0; x < width; ++x) {
         const auto centre = texelDirection(layout, width, height, x + 0.5, y + 0.5);
         if (!centre) continue;
         points.column.push_back(x);
         points.solid_angle.push_back(texelSolidAngle(layout, width, height, x, y));
-        addTexel(layout, width, height, x, y, *centre, footprint.scale, rule, points);
+        points.first.push_back(points.u.size());
+        if (isBallMap(layout)) {
+            const Footprint own = footprintOfTexel(footprint, layout, width, x, y);
+            addTexel(layout, width, height, x, y, *centre, own.scale, footprintRule(own.samples),
+                     points);
+        } else {
+            addTexel(layout, width, height, x, y, *centre, footprint.scale, rule, points);
+        }
     }
+    points.first.push_back(points.u.size());
     return points;
 }
 

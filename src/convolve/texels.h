@@ -15,6 +15,9 @@ namespace ibl {
 struct Footprint {
     double scale = 0;
     int samples = 1;
+    double texel = 0;         ///< what it is for: the extent of a texel, radians,
+    double lobe_diameter = 0; ///< of the lobe,
+    int degree = 0;           ///< and the field's degree
 };
 
 /// The degree of a field that has none: only the lobe limits what is to be seen.
@@ -29,6 +32,9 @@ double texelAngle(const PrefilterRequest& request);
 /// field's highest degree falls between them.
 Footprint footprintOf(const Lobe& lobe, double texel, int degree);
 
+/// The footprint of one texel of a ball map, whose texels are the longer the nearer to the rim.
+Footprint footprintOfTexel(const Footprint& of_map, Layout layout, int size, int x, int y);
+
 /// The number of texels of the map that have a direction.
 double texelCount(const PrefilterRequest& request);
 
@@ -36,14 +42,22 @@ double texelCount(const PrefilterRequest& request);
 struct RowPoints {
     std::vector<int> column;         ///< of each texel
     std::vector<double> solid_angle; ///< of each texel
-    int per_texel = 1;
-    std::vector<double> u; ///< lat-long points, per_texel to a texel
+    std::vector<std::size_t> first;  ///< of each texel's points, and one beyond all
+    std::vector<double> u;           ///< lat-long points
     std::vector<double> v;
     std::vector<double> share; ///< of each point in its texel's mean; they sum to 1
 };
 
 /// Row y of a map of that layout and extent.
 RowPoints rowPoints(Layout layout, int width, int height, int y, const Footprint& footprint);
+
+/// What of a texel belongs to it, in texels from its centre: those at the poles and at the faces'
+/// edges of OpenEXR's layouts end at their centres (and are merged afterwards, mergeBorder). Not
+/// for ball maps (cut_texels.h).
+struct TexelPart {
+    V2d low, high;
+};
+TexelPart ownPart(Layout layout, int width, int height, int x, int y);
 
 /// A map's image.
 struct MapExtent {
@@ -53,8 +67,8 @@ struct MapExtent {
     double texel; ///< texelAngle
 };
 
-/// Polar direction (peaks.h) of a place in texel (x, y), `offset` texels from its centre; drawn
-/// towards the centre where it lies outside a ball map's disc.
+/// Polar direction (peaks.h) of a place in texel (x, y), `offset` texels from its centre; beyond a
+/// ball map's rim that of the rim.
 V3d texelPlace(const MapExtent& map, int x, int y, V2d offset);
 
 /// The points of one texel.

@@ -136,6 +136,7 @@ Layout plainLayout(Layout layout) {
 } // namespace
 
 void mergeBorder(Panorama& panorama) {
+    if (!hasBorderRule(panorama.layout)) return;
     Image& image = panorama.image;
     if (panorama.layout == Layout::exrLatlong) {
         const int last = image.width - 1;
@@ -240,7 +241,7 @@ Panorama resample(const Panorama& source, Layout to, int size, int threads, Enla
     } else {
         latlongToLatlong(source, result, enlarging, threads);
     }
-    if (hasBorderRule(to)) mergeBorder(result);
+    mergeBorder(result);
     return result;
 }
 

@@ -30,4 +30,8 @@ enum class Enlarging {
 Panorama resample(const Panorama& source, Layout to, int size, int threads = 0,
                   Enlarging enlarging = Enlarging::interpolate);
 
+/// Gives the texels of an exr layout that look in one direction (its seam, poles, edges of faces)
+/// one value, their mean; they cover equal areas, so that energy stays. Other layouts have none.
+void mergeBorder(Panorama& panorama);
+
 } // namespace ibl

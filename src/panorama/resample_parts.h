@@ -74,8 +74,4 @@ inline void setPixel(float* pixel, const V3d& value) {
         pixel[c] = static_cast<float>(value[c]);
 }
 
-/// Gives the texels of an exr layout that look in one direction (its seam, poles, edges of faces)
-/// one value, their mean; they cover equal areas, so that energy stays.
-void mergeBorder(Panorama& panorama);
-
 } // namespace ibl

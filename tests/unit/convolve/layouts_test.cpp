@@ -1,7 +1,9 @@
 // Every layout of the table can be synthesised onto.
 #include "convolve/prefilter.h"
 
+#include "panorama/conventions.h"
 #include "panorama/layouts.h"
+#include "panorama/square_maps.h"
 
 #include <gtest/gtest.h>
 
@@ -15,8 +17,9 @@ TEST(PrefilterLayouts, FurnaceIsOneInEveryLayout) {
     std::fill(probe.pixels.begin(), probe.pixels.end(), 0.7f);
     for (const std::string& name : layoutNames()) {
         const Layout layout = *layoutFromName(name);
-        for (const Lobe& lobe : {Lobe{Kernel::ggx, 0}, Lobe{Kernel::ggx, 0.3}, Lobe{Kernel::ggx, 1},
-                                 Lobe{Kernel::lambert, 0}}) {
+        for (const Lobe& lobe :
+             {Lobe{Kernel::ggx, 0}, Lobe{Kernel::ggx, 0.05}, Lobe{Kernel::ggx, 0.3},
+              Lobe{Kernel::ggx, 1}, Lobe{Kernel::lambert, 0}}) {
             for (int size : {1, 4, 17}) {
                 const PrefilterRequest request{lobe, layout, size};
                 const auto results = prefilter({Layout::latlong, probe}, {&request, 1}, {});
@@ -31,6 +34,36 @@ TEST(PrefilterLayouts, FurnaceIsOneInEveryLayout) {
                             << y;
                     }
                 }
+            }
+        }
+    }
+}
+
+/// A sun where ball maps have their rim, where the octahedral map has its corners, at the pole of
+/// lat-longs and where faces meet.
+TEST(PrefilterLayouts, NarrowLobesKeepALoneSunsEnergyInEveryLayout) {
+    constexpr int kHeight = 24, kSize = 8;
+    for (const auto& [column, row] : {std::pair{0, 12}, {47, 11}, {19, 23}, {3, 0}, {18, 16}}) {
+        Image probe(2 * kHeight, kHeight);
+        std::ranges::fill(probe.pixels, 0.0f);
+        probe.at(column, row)[1] = 1e9f;
+        const double total = 1e9 * latlongPixelSolidAngle(2 * kHeight, kHeight, row);
+        for (const std::string& name : layoutNames()) {
+            const Layout layout = *layoutFromName(name);
+            for (const double roughness : {0.001, 0.06}) {
+                const PrefilterRequest request{{Kernel::ggx, roughness}, layout, kSize};
+                const Image map =
+                    prefilter({Layout::latlong, probe}, {&request, 1}, {})[0].map.image;
+                double energy = 0;
+                for (int y = 0; y < map.height; ++y) {
+                    for (int x = 0; x < map.width; ++x) {
+                        const float value = map.at(x, y)[1];
+                        EXPECT_GE(value, 0);
+                        energy += value * texelSolidAngle(layout, map.width, map.height, x, y);
+                    }
+                }
+                EXPECT_NEAR(energy / total, 1, isSquareMap(layout) ? 4e-4 : 1e-5)
+                    << name << " " << roughness << " sun at " << column << " " << row;
             }
         }
     }
