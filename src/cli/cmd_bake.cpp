@@ -134,7 +134,7 @@ void runBake(const BakeOptions& options) {
             for (std::size_t k = 1; k < results.size(); ++k)
                 session.write(levelName(specular, static_cast<int>(k) - 1), results[k].map, how);
         }
-        session.writeText(folder.file("lights.json"), lightsJson(lights));
+        session.writeText(folder.file("lights.json"), lightsJson(lights, session.threads()));
         session.writeText(folder.file("sh.json"), shJson(sh, options.probe.input, false, 0));
         session.writeText(folder.file("bake.json"),
                           manifest(options, session.results()["maps"], lights.lights.size()));

@@ -70,7 +70,7 @@ LitTree cutProbe(const Image& latlong, const LuminousEnergy& energy, LightMethod
     if (method == LightMethod::variance)
         return varianceCuts(latlong, energy.absolute, count, threads);
     const SummedAreaTable table(latlong, energy.lit, threads);
-    return withLit(medianCut(table, count), table);
+    return withLit(medianCut(table, count, threads), table);
 }
 
 std::vector<Light> lightsAfter(const LitTree& cuts, const std::vector<RegionSums>& sums,

@@ -98,28 +98,38 @@ void addRows(const Image& probe, const std::vector<RowTap>& taps, float* line) {
 
 /// Spreads the line's pixels (RGB, and one float after the last) over the grid's columns of four
 /// floats, which are zero before; the taps reach one column beyond the left, three the right. The
-/// four columns that pixels go to are kept in registers until no pixel goes to them any more.
+/// four columns that pixels go to are kept in registers until no pixel goes to them any more, in
+/// two sums for pixels in turn, so that one addition need not wait for the other.
 IBL_MULTIVERSION
 void spreadColumns(const float* line, const std::vector<ColumnTap>& columns, float* grid) {
-    FloatLanes sums[4]{};
+    FloatLanes sums[2][4]{};
     int first = columns[0].first;
-    const auto put = [&](const FloatLanes& sum) __attribute__((always_inline)) {
+    const auto put = [&](std::size_t k) __attribute__((always_inline)) {
+        const FloatLanes sum = sums[0][k] + sums[1][k];
         __builtin_memcpy(grid + 4 * (first++ + 1), &sum, sizeof sum);
     };
-    for (std::size_t i = 0; i < columns.size(); ++i) {
-        while (first < columns[i].first) {
-            put(sums[0]);
-            for (std::size_t k = 0; k < 3; ++k)
-                sums[k] = sums[k + 1];
-            sums[3] = FloatLanes{};
-        }
+    const auto add = [&](std::size_t i, FloatLanes * to) __attribute__((always_inline)) {
         FloatLanes pixel;
         __builtin_memcpy(&pixel, line + 3 * i, sizeof pixel);
         for (std::size_t k = 0; k < 4; ++k)
-            sums[k] += columns[i].weight[k] * pixel;
+            to[k] += columns[i].weight[k] * pixel;
+    };
+    for (std::size_t i = 0; i < columns.size();) {
+        while (first < columns[i].first) {
+            put(0);
+            for (FloatLanes* half : sums) {
+                for (std::size_t k = 0; k < 3; ++k)
+                    half[k] = half[k + 1];
+                half[3] = FloatLanes{};
+            }
+        }
+        add(i, sums[0]);
+        if (++i == columns.size() || columns[i].first != first) continue;
+        add(i, sums[1]);
+        ++i;
     }
-    for (const FloatLanes& sum : sums)
-        put(sum);
+    for (std::size_t k = 0; k < 4; ++k)
+        put(k);
 }
 
 /// A row of the grid, four floats a column, after one that is not part of it.
@@ -150,10 +160,13 @@ WaveTable waveTable(int degree, int columns) {
         cosine.push_back(std::cos(2 * kPi * k / columns));
         sine.push_back(std::sin(2 * kPi * k / columns));
     }
+    for (std::vector<double>* values : {&table.cosine, &table.sine})
+        values->reserve(static_cast<std::size_t>(columns / 4 + 1) * table.waves);
     for (int c = 0; c <= columns / 4; ++c) {
-        for (int m = 0; m < table.waves; ++m) {
-            table.cosine.push_back(cosine[static_cast<std::size_t>(c * m % columns)]);
-            table.sine.push_back(sine[static_cast<std::size_t>(c * m % columns)]);
+        for (int m = 0, place = 0; m < table.waves; ++m) { // place = c m, modulo the columns
+            table.cosine.push_back(cosine[static_cast<std::size_t>(place)]);
+            table.sine.push_back(sine[static_cast<std::size_t>(place)]);
+            place = place + c < columns ? place + c : place + c - columns;
         }
     }
     return table;
@@ -217,7 +230,7 @@ struct GridWaves {
     int rows;
     int columns;
     int waves;
-    std::vector<double> values;
+    std::vector<double, UninitialisedAllocator<double>> values;
 
     double* at(int row, int part) {
         return &values[(static_cast<std::size_t>(row) * 6 + part) * waves];

@@ -15,7 +15,7 @@ std::vector<Light> medianLights(const Image& image, int count, int threads = 2) 
 }
 
 std::vector<PixelRegion> medianRegions(const SummedAreaTable& table, int count) {
-    const CutTree tree = medianCut(table, count);
+    const CutTree tree = medianCut(table, count, 2);
     std::vector<PixelRegion> regions;
     for (const int node : leavesOf(tree, tree.cut.size()))
         regions.push_back(tree.nodes[node]);
@@ -114,7 +114,7 @@ TEST(MedianCut, UniformProbeGivesRegionsOfEqualSolidAngle) {
 
 TEST(MedianCut, FewerCutsAreAPrefixOfMore) {
     const SummedAreaTable table(noise(64, 32, 21), luminousEnergy(noise(64, 32, 21), 1).lit, 2);
-    const CutTree few = medianCut(table, 37), many = medianCut(table, 200);
+    const CutTree few = medianCut(table, 37, 1), many = medianCut(table, 200, 2);
     ASSERT_LT(few.cut.size(), many.cut.size());
     EXPECT_TRUE(std::equal(few.cut.begin(), few.cut.end(), many.cut.begin()));
 }
@@ -194,7 +194,7 @@ TEST(MedianCut, SameLightsForAnyThreadCount) {
     LightSet one, five;
     one.lights = medianLights(image, 77, 1);
     five.lights = medianLights(image, 77, 5);
-    EXPECT_EQ(lightsJson(one), lightsJson(five));
+    EXPECT_EQ(lightsJson(one, 1), lightsJson(five, 5));
 }
 
 TEST(MedianCut, DirectionsLieInTheirRegions) {
