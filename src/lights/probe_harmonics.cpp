@@ -147,20 +147,25 @@ std::vector<float> gridRow(const Image& probe, const std::vector<RowTap>& rows,
     return ring;
 }
 
+/// Vectors of floats, which are exact enough: what they leave of a coefficient's error is spread
+/// over all rows.
+constexpr int kWaves = 8;
+typedef float WaveLanes __attribute__((vector_size(kWaves * sizeof(float))));
+
 /// cos and sin of m psi_c for c = 0 .. columns / 4, m fastest, `waves` of them a column.
 struct WaveTable {
-    int waves; ///< degree + 1, rounded up to whole pairs of vectors
-    std::vector<double> cosine, sine;
+    int waves; ///< degree + 1, rounded up to whole vectors
+    std::vector<float> cosine, sine;
 };
 
 WaveTable waveTable(int degree, int columns) {
-    WaveTable table{(degree + 2 * kLanes) / (2 * kLanes) * (2 * kLanes), {}, {}};
-    std::vector<double> cosine, sine;
+    WaveTable table{(degree + kWaves) / kWaves * kWaves, {}, {}};
+    std::vector<float> cosine, sine;
     for (int k = 0; k < columns; ++k) {
-        cosine.push_back(std::cos(2 * kPi * k / columns));
-        sine.push_back(std::sin(2 * kPi * k / columns));
+        cosine.push_back(static_cast<float>(std::cos(2 * kPi * k / columns)));
+        sine.push_back(static_cast<float>(std::sin(2 * kPi * k / columns)));
     }
-    for (std::vector<double>* values : {&table.cosine, &table.sine})
+    for (std::vector<float>* values : {&table.cosine, &table.sine})
         values->reserve(static_cast<std::size_t>(columns / 4 + 1) * table.waves);
     for (int c = 0; c <= columns / 4; ++c) {
         for (int m = 0, place = 0; m < table.waves; ++m) { // place = c m, modulo the columns
@@ -172,10 +177,13 @@ WaveTable waveTable(int degree, int columns) {
     return table;
 }
 
+/// For even and odd m.
+using EvenOdd = std::array<float, 2>;
+
 /// Columns half a turn apart differ by the sign (-1)^m, and those mirrored at a quarter turn by the
 /// sign of cosine or sine: a quarter of them is left.
 struct Folded {
-    std::array<double, kLanes> cosine[3], sine[3]; ///< by channel, for even and odd m in turn
+    EvenOdd cosine[3], sine[3]; ///< by channel
 };
 
 std::vector<Folded> fold(const float* grid, int columns) {
@@ -185,43 +193,47 @@ std::vector<Folded> fold(const float* grid, int columns) {
         const bool alone = c == 0 || c == quarter;
         const int d = half - c;
         for (int channel = 0; channel < 3; ++channel) {
-            const auto at = [&](int column) { return double{grid[4 * column + channel]}; };
-            const double plus = at(c) + at(c + half), minus = at(c) - at(c + half);
-            const double plus_d = alone ? 0 : at(d) + at(d + half);
-            const double minus_d = alone ? 0 : at(d) - at(d + half);
+            const auto at = [&](int column) { return grid[4 * column + channel]; };
+            const float plus = at(c) + at(c + half), minus = at(c) - at(c + half);
+            const float plus_d = alone ? 0 : at(d) + at(d + half);
+            const float minus_d = alone ? 0 : at(d) - at(d + half);
             Folded& f = folded[static_cast<std::size_t>(c)];
-            const double cosines[2] = {plus + plus_d, minus - minus_d};
-            const double sines[2] = {plus - plus_d, minus + minus_d};
-            for (std::size_t k = 0; k < kLanes; ++k) {
-                f.cosine[channel][k] = cosines[k % 2];
-                f.sine[channel][k] = sines[k % 2];
-            }
+            f.cosine[channel] = {plus + plus_d, minus - minus_d};
+            f.sine[channel] = {plus - plus_d, minus + minus_d};
         }
     }
     return folded;
 }
 
+/// Even, odd, even, odd, ...
+IBL_INLINE WaveLanes repeated(const EvenOdd& values) {
+    double both;
+    __builtin_memcpy(&both, values.data(), sizeof both);
+    return reinterpret_cast<WaveLanes>(Lanes{both, both, both, both});
+}
+
+IBL_INLINE WaveLanes loadWaves(const float* from) {
+    WaveLanes v;
+    __builtin_memcpy(&v, from, sizeof v);
+    return v;
+}
+
 /// sum_c x_c exp(-i m psi_c) of three channels: re, im, re, im, re, im, each of `waves` values.
 IBL_MULTIVERSION
-void waves(const WaveTable& table, const std::vector<Folded>& folded, double* out) {
-    for (int m = 0; m < table.waves; m += 2 * kLanes) {
-        Lanes sums[6]{}, next[6]{};
+void waves(const WaveTable& table, const std::vector<Folded>& folded, float* out) {
+    for (int m = 0; m < table.waves; m += kWaves) {
+        WaveLanes sums[6]{};
         for (std::size_t c = 0; c < folded.size(); ++c) {
             const std::size_t at = c * static_cast<std::size_t>(table.waves) + m;
-            const double *cosine = &table.cosine[at], *sine = &table.sine[at];
+            const WaveLanes cosine = loadWaves(&table.cosine[at]),
+                            sine = loadWaves(&table.sine[at]);
             for (std::size_t k = 0; k < 3; ++k) {
-                const Lanes with_cosine = loadLanes(folded[c].cosine[k].data());
-                const Lanes with_sine = loadLanes(folded[c].sine[k].data());
-                sums[2 * k] += with_cosine * loadLanes(cosine);
-                next[2 * k] += with_cosine * loadLanes(cosine + kLanes);
-                sums[2 * k + 1] -= with_sine * loadLanes(sine);
-                next[2 * k + 1] -= with_sine * loadLanes(sine + kLanes);
+                sums[2 * k] += repeated(folded[c].cosine[k]) * cosine;
+                sums[2 * k + 1] -= repeated(folded[c].sine[k]) * sine;
             }
         }
-        for (int k = 0; k < 6; ++k) {
+        for (int k = 0; k < 6; ++k)
             __builtin_memcpy(out + k * table.waves + m, &sums[k], sizeof sums[k]);
-            __builtin_memcpy(out + k * table.waves + m + kLanes, &next[k], sizeof next[k]);
-        }
     }
 }
 
@@ -230,9 +242,9 @@ struct GridWaves {
     int rows;
     int columns;
     int waves;
-    std::vector<double, UninitialisedAllocator<double>> values;
+    std::vector<float, UninitialisedAllocator<float>> values;
 
-    double* at(int row, int part) {
+    float* at(int row, int part) {
         return &values[(static_cast<std::size_t>(row) * 6 + part) * waves];
     }
 };
@@ -266,11 +278,11 @@ GridWaves gridWaves(const Image& probe, int degree, int threads,
 void foldMargins(GridWaves& grid) {
     for (int k = 0; k < kMargin; ++k) {
         for (int part = 0; part < 6; ++part) {
-            const double *north = grid.at(k, part), *south = grid.at(grid.rows + kMargin + k, part);
-            double *to_north = grid.at(2 * kMargin - 1 - k, part),
-                   *to_south = grid.at(grid.rows + kMargin - 1 - k, part);
+            const float *north = grid.at(k, part), *south = grid.at(grid.rows + kMargin + k, part);
+            float *to_north = grid.at(2 * kMargin - 1 - k, part),
+                  *to_south = grid.at(grid.rows + kMargin - 1 - k, part);
             for (int m = 0; m < grid.waves; ++m) {
-                const double sign = m % 2 ? -1 : 1;
+                const float sign = m % 2 ? -1 : 1;
                 to_north[m] += sign * north[m];
                 to_south[m] += sign * south[m];
             }
