@@ -6,7 +6,6 @@
 #include "core/parallel.h"
 #include "lights/harmonic_sums.h"
 #include "lights/lit_lanes.h"
-#include "lights/summed_area.h"
 
 #include <algorithm>
 #include <cmath>
@@ -249,9 +248,7 @@ struct GridWaves {
     }
 };
 
-/// `energies` gets the energy of each row of the probe.
-GridWaves gridWaves(const Image& probe, int degree, int threads,
-                    std::vector<LuminousEnergy>& energies) {
+GridWaves gridWaves(const Image& probe, int degree, int threads) {
     const WaveTable table = waveTable(degree, 8 * degree);
     GridWaves grid{4 * degree, 8 * degree, table.waves, {}};
     const int all_rows = grid.rows + 2 * kMargin;
@@ -262,9 +259,6 @@ GridWaves gridWaves(const Image& probe, int degree, int threads,
     const int runs = (all_rows + kRun - 1) / kRun;
     parallelFor(static_cast<std::size_t>(runs), threads, [&](std::size_t index) {
         const int run = static_cast<int>(index);
-        // About the rows that the run takes from, so that they are in the cache.
-        for (long j = long{run} * probe.height / runs; j < (run + 1L) * probe.height / runs; ++j)
-            energies[static_cast<std::size_t>(j)] = luminousEnergyOfRow(probe, static_cast<int>(j));
         for (int r = run * kRun; r < std::min(all_rows, (run + 1) * kRun); ++r) {
             const auto ring =
                 gridRow(probe, rows[static_cast<std::size_t>(r)], columns, grid.columns);
@@ -322,9 +316,8 @@ void addRowPairs(GridWaves& grid, const std::vector<double>& pixel, int begin, i
 
 } // namespace
 
-ProbeSums sumProbe(const Image& latlong, int degree, int threads) {
-    std::vector<LuminousEnergy> energies(static_cast<std::size_t>(latlong.height));
-    GridWaves grid = gridWaves(latlong, degree, threads, energies);
+LightHarmonics probeHarmonics(const Image& latlong, int degree, int threads) {
+    GridWaves grid = gridWaves(latlong, degree, threads);
     foldMargins(grid);
     std::vector<double> pixel; // a pixel's extent in psi, for each wave
     for (int m = 0; m <= degree; ++m) {
@@ -338,9 +331,9 @@ ProbeSums sumProbe(const Image& latlong, int degree, int threads) {
         const int begin = static_cast<int>(run) * kRun;
         addRowPairs(grid, pixel, begin, std::min(half, begin + kRun), parts[run]);
     });
-    ProbeSums total{LightHarmonics(degree), luminousEnergy(energies)};
+    LightHarmonics total(degree);
     for (const LightHarmonics& part : parts)
-        total.harmonics += part;
+        total += part;
     return total;
 }
 
