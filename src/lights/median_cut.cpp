@@ -97,7 +97,7 @@ CutTree medianCut(const SummedAreaTable& table, int count, int threads) {
             const std::size_t end =
                 std::min(round.size(), begin + static_cast<std::size_t>(count - lit));
             std::vector<std::pair<PixelRegion, PixelRegion>> parts(end - begin);
-            parallelForRuns(parts.size(), 16, threads, [&](std::size_t first, std::size_t last) {
+            parallelForRuns(parts.size(), 64, threads, [&](std::size_t first, std::size_t last) {
                 for (std::size_t i = first; i < last; ++i)
                     parts[i] = cutRegion(table, tree.nodes[round[begin + i]]);
             });
