@@ -138,7 +138,7 @@ void runBake(const BakeOptions& options) {
                 chainLabels(Kernel::ggx, options.roughness_map, std::span(requests).subspan(1)),
                 how);
         }
-        session.writeText(folder.file("lights.json"), lightsJson(lights));
+        session.writeText(folder.file("lights.json"), lightsJson(lights, session.threads()));
         session.writeText(folder.file("sh.json"), shJson(sh, options.probe.input, false, 0));
         session.writeText(folder.file("bake.json"),
                           manifest(options, session.results()["maps"], lights.lights.size()));

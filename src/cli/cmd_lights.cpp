@@ -127,7 +127,7 @@ void writeLights(Session& session, const LightsOptions& options, LightFormat for
     std::string text;
     switch (format) {
     case LightFormat::json:
-        text = lightsJson(set);
+        text = lightsJson(set, session.threads());
         break;
     case LightFormat::csv:
         text = lightsCsv(set);

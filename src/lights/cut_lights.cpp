@@ -53,9 +53,9 @@ int blockShift(const Image& latlong, int count) {
     return shift;
 }
 
-LitTree varianceCuts(const Image& latlong, double absolute_energy, int count, int threads) {
+LitTree varianceCuts(const Image& latlong, int count, int threads) {
     for (int shift = blockShift(latlong, count);; shift = 0) {
-        const MomentTable table(latlong, absolute_energy, shift, threads);
+        const MomentTable table(latlong, shift, threads);
         LitTree cuts = withLit(varianceCut(table, count), table);
         // Few lit blocks may be many lit pixels.
         if (shift > 0 && litCount(cuts) < count) continue;
@@ -65,12 +65,10 @@ LitTree varianceCuts(const Image& latlong, double absolute_energy, int count, in
     }
 }
 
-LitTree cutProbe(const Image& latlong, const LuminousEnergy& energy, LightMethod method, int count,
-                 int threads) {
-    if (method == LightMethod::variance)
-        return varianceCuts(latlong, energy.absolute, count, threads);
-    const SummedAreaTable table(latlong, energy.lit, threads);
-    return withLit(medianCut(table, count), table);
+LitTree cutProbe(const Image& latlong, LightMethod method, int count, int threads) {
+    if (method == LightMethod::variance) return varianceCuts(latlong, count, threads);
+    const SummedAreaTable table(latlong, threads);
+    return withLit(medianCut(table, count, threads), table);
 }
 
 std::vector<Light> lightsAfter(const LitTree& cuts, const std::vector<RegionSums>& sums,
@@ -151,10 +149,10 @@ std::optional<LightSet> firstWithin(const Search& s) {
 
 LightSet fewestLights(const Image& latlong, const LightRequest& request, int threads) {
     for (int most = 64;; most = std::min(kMostLights, 8 * most)) {
-        const auto [probe, energy] = sumProbe(latlong, harmonicDegree(most), threads);
-        if (energy.lit <= 0) return {};
-        const LitTree cuts = cutProbe(latlong, energy, request.method, most, threads);
+        const LightHarmonics probe = probeHarmonics(latlong, harmonicDegree(most), threads);
+        const LitTree cuts = cutProbe(latlong, request.method, most, threads);
         const std::vector<RegionSums> sums = allSums(latlong, cuts.tree, threads);
+        if (sums[0].energy <= 0) return {};
         if (auto set = firstWithin({latlong, request, cuts, sums, probe, threads})) return *set;
         if (most == kMostLights || litCount(cuts) < most) {
             const double best =
@@ -169,15 +167,16 @@ LightSet fewestLights(const Image& latlong, const LightRequest& request, int thr
     }
 }
 
-std::vector<Light> lightsFor(const Image& latlong, const LightRequest& request,
-                             const LuminousEnergy& energy, int threads) {
-    if (energy.lit <= 0) return {};
+/// None for a probe without light.
+std::vector<Light> lightsFor(const Image& latlong, const LightRequest& request, int threads) {
     if (request.method == LightMethod::importance) {
-        const SummedAreaTable table(latlong, energy.lit, threads);
+        const SummedAreaTable table(latlong, threads);
+        if (table.energy({0, 0, table.width(), table.height()}) <= 0) return {};
         return importanceLights(latlong, table, request.count, threads);
     }
-    const LitTree cuts = cutProbe(latlong, energy, request.method, request.count, threads);
+    const LitTree cuts = cutProbe(latlong, request.method, request.count, threads);
     const std::vector<RegionSums> sums = allSums(latlong, cuts.tree, threads);
+    if (sums[0].energy <= 0) return {};
     return lightsAfter(cuts, sums, cuts.tree.cut.size(), latlong, request.placement);
 }
 
@@ -220,9 +219,10 @@ LightSet cutLights(const Image& latlong, const LightRequest& request, int thread
     if (request.max_error) {
         set = fewestLights(latlong, request, threads);
     } else {
-        const auto [probe, energy] = sumProbe(latlong, harmonicDegree(request.count), threads);
+        const LightHarmonics probe =
+            probeHarmonics(latlong, harmonicDegree(request.count), threads);
         const bool matched = request.placement == LightPlacement::matched;
-        set.lights = lightsFor(latlong, request, energy, threads);
+        set.lights = lightsFor(latlong, request, threads);
         if (matched) matchPlaces(set.lights, probe, threads);
         set.irradiance_error = errorOf(set.lights, probe, threads);
         const bool same_count =
@@ -244,9 +244,9 @@ LightSet cutLights(const Image& latlong, const LightRequest& request, int thread
 
 double lampError(const Image& probe, const Image& residual, const Light& lamp, int threads) {
     const int degree = harmonicDegree(1);
-    const LightHarmonics whole = sumProbe(probe, degree, threads).harmonics;
+    const LightHarmonics whole = probeHarmonics(probe, degree, threads);
     LightHarmonics difference = whole;
-    difference -= sumProbe(residual, degree, threads).harmonics;
+    difference -= probeHarmonics(residual, degree, threads);
     difference -= lightHarmonics({lamp}, degree, threads);
     return irradianceError(whole, difference);
 }

@@ -30,7 +30,7 @@ std::vector<int> leavesOf(const CutTree& tree, std::size_t cuts);
 /// each round every region with energy is cut, the heaviest first, across its longer side
 /// (longitude scaled by the cosine of the region's middle latitude) where the energy on both sides
 /// is most nearly equal. The last round ends when the count is reached.
-CutTree medianCut(const SummedAreaTable& table, int count);
+CutTree medianCut(const SummedAreaTable& table, int count, int threads);
 
 /// The same, but a cut is along either side, so that the larger variance of the two parts is least:
 /// the variance of a region is the luminance-weighted sum of squared distances, on the unit sphere,

@@ -3,7 +3,6 @@
 
 #include "image/image.h"
 #include "lights/light.h"
-#include "lights/summed_area.h"
 
 #include <array>
 #include <cstddef>
@@ -40,15 +39,9 @@ int harmonicDegree(int count);
 /// Of a lat-long probe (three channels, finite), pixels as areas. The probe is gathered on a grid
 /// of 8 degree x 4 degree points by the adjoint of cubic interpolation, so the cost is a few
 /// operations a pixel. Relative error of a coefficient at most 0.02 (2 pi l / (8 degree))^4, i.e.
-/// 1e-8 at l = 2 and 1e-2 at l = degree = 64, where Lambert's kernel has fallen to 1e-4.
-///
-/// The probe's energy comes along, since reading a large probe's pixels once more costs as much as
-/// adding them up.
-struct ProbeSums {
-    LightHarmonics harmonics;
-    LuminousEnergy energy;
-};
-ProbeSums sumProbe(const Image& latlong, int degree, int threads);
+/// 1e-8 at l = 2 and 1e-2 at l = degree = 64, where Lambert's kernel has fallen to 1e-4; floats add
+/// 2e-8 of all irradiance.
+LightHarmonics probeHarmonics(const Image& latlong, int degree, int threads);
 
 /// Of lights, as points; exact but for rounding.
 LightHarmonics lightHarmonics(const std::vector<Light>& lights, int degree, int threads);

@@ -1,12 +1,14 @@
 #include "lights/lights_json.h"
 
 #include "core/error.h"
+#include "core/parallel.h"
 #include "lights/number_text.h"
 
 #include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <initializer_list>
+#include <vector>
 
 namespace ibl {
 namespace {
@@ -80,7 +82,7 @@ Light lightOf(const Json& json) {
 
 } // namespace
 
-std::string lightsJson(const LightSet& set) {
+std::string lightsJson(const LightSet& set, int threads) {
     Json root;
     root["axes"] = kLightAxes;
     root["units"] = {{"direction", "unit vector towards the light"},
@@ -105,13 +107,22 @@ std::string lightsJson(const LightSet& set) {
     std::string text = root.dump(2, ' ', false, Json::error_handler_t::replace);
     text.erase(text.rfind("\n}"));
     text += ",\n  \"lights\": [";
-    const char* separator = "\n";
-    for (const Light& light : set.lights) {
-        text += separator;
-        append(text, light, total);
-        separator = ",\n";
-    }
-    return text + (set.lights.empty() ? "]\n}\n" : "\n  ]\n}\n");
+    constexpr std::size_t kRun = 128;
+    std::vector<std::string> runs((set.lights.size() + kRun - 1) / kRun);
+    parallelForRuns(set.lights.size(), kRun, threads, [&](std::size_t begin, std::size_t end) {
+        runs[begin / kRun].reserve(512 * (end - begin));
+        for (std::size_t i = begin; i < end; ++i) {
+            runs[begin / kRun] += i == 0 ? "\n" : ",\n";
+            append(runs[begin / kRun], set.lights[i], total);
+        }
+    });
+    std::size_t size = text.size() + 16;
+    for (const std::string& run : runs)
+        size += run.size();
+    text.reserve(size);
+    for (const std::string& run : runs)
+        text += run;
+    return text += set.lights.empty() ? "]\n}\n" : "\n  ]\n}\n";
 }
 
 LightSet readLightsJson(std::string_view text, const std::string& name) {

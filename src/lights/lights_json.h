@@ -16,7 +16,7 @@ inline constexpr const char* kLightUnits = "radiance of the source times steradi
 
 /// One JSON object, indented, ending in a newline; testdata/lights.schema.json and
 /// ibltool-lights(1) say what is in it. Numbers are the shortest that read back as the same double.
-std::string lightsJson(const LightSet& set);
+std::string lightsJson(const LightSet& set, int threads);
 
 /// What lightsJson wrote, but for `change`. `name` is for messages.
 /// Throws Error (input) when the text is not such an object.

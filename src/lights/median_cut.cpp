@@ -1,10 +1,14 @@
+#include "core/parallel.h"
 #include "lights/cut_tree.h"
 #include "lights/cutting.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
+#include <functional>
 #include <utility>
+#include <vector>
 
 namespace ibl {
 namespace {
@@ -71,28 +75,36 @@ std::pair<PixelRegion, PixelRegion> cutRegion(const SummedAreaTable& table, cons
 
 } // namespace
 
-CutTree medianCut(const SummedAreaTable& table, int count) {
+CutTree medianCut(const SummedAreaTable& table, int count, int threads) {
     CutTree tree;
-    tree.nodes.push_back({openingColumn(table), 0, table.width(), table.height()});
-    const auto isLit = [&](int node) { return table.energy(tree.nodes[node]) > 0; };
-    int lit = isLit(0) ? 1 : 0;
+    std::vector<std::int64_t> energies; // of the nodes
+    const auto add = [&](const PixelRegion& node) {
+        tree.nodes.push_back(node);
+        energies.push_back(table.energy(node));
+        return energies.back() > 0 ? 1 : 0;
+    };
+    int lit = add({openingColumn(table), 0, table.width(), table.height()});
     while (lit < count) {
         std::vector<int> round;
         for (const int node : leavesOf(tree, tree.cut.size())) {
             const PixelRegion& r = tree.nodes[node];
-            if (isLit(node) && (r.width > 1 || r.height > 1)) round.push_back(node);
+            if (energies[node] > 0 && (r.width > 1 || r.height > 1)) round.push_back(node);
         }
         if (round.empty()) break;
-        std::stable_sort(round.begin(), round.end(), [&](int a, int b) {
-            return table.energy(tree.nodes[a]) > table.energy(tree.nodes[b]);
-        });
-        for (const int node : round) {
-            if (lit == count) break;
-            const auto [first, second] = cutRegion(table, tree.nodes[node]);
-            tree.cut.push_back(node);
-            tree.nodes.push_back(first);
-            tree.nodes.push_back(second);
-            if (table.energy(first) > 0 && table.energy(second) > 0) ++lit;
+        std::ranges::stable_sort(round, std::greater(), [&](int node) { return energies[node]; });
+        // A cut adds at most one lit region: as many as are missing can be made side by side.
+        for (std::size_t begin = 0; lit < count && begin < round.size();) {
+            const std::size_t end =
+                std::min(round.size(), begin + static_cast<std::size_t>(count - lit));
+            std::vector<std::pair<PixelRegion, PixelRegion>> parts(end - begin);
+            parallelForRuns(parts.size(), 64, threads, [&](std::size_t first, std::size_t last) {
+                for (std::size_t i = first; i < last; ++i)
+                    parts[i] = cutRegion(table, tree.nodes[round[begin + i]]);
+            });
+            for (const auto& [first, second] : parts) {
+                tree.cut.push_back(round[begin++]);
+                lit += add(first) + add(second) - 1;
+            }
         }
     }
     return tree;

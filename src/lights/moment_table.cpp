@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 namespace ibl {
@@ -43,17 +44,20 @@ void addPixelRow(const float* rgb, const ColumnMoments& columns, const double (&
     }
 }
 
+/// Makes the row's blocks, which stand where its sums will, those sums.
 IBL_MULTIVERSION
-void addBlockRow(const double* blocks, int width, const MomentTable::Sums* above,
+void addBlockRow(int width, double scale, const MomentTable::Sums* above,
                  MomentTable::Sums* below) {
     LongLanes sum{};
     below[0] = {};
-    for (int i = 0; i < width; ++i) {
-        sum += rounded(loadLanes(blocks + 4 * i));
+    for (int i = 1; i <= width; ++i) {
+        Lanes block;
+        __builtin_memcpy(&block, below[i].parts, sizeof block);
+        sum += rounded(scale * block);
         LongLanes up;
-        __builtin_memcpy(&up, above[i + 1].parts, sizeof up);
+        __builtin_memcpy(&up, above[i].parts, sizeof up);
         up += sum;
-        __builtin_memcpy(below[i + 1].parts, &up, sizeof up);
+        __builtin_memcpy(below[i].parts, &up, sizeof up);
     }
 }
 
@@ -63,24 +67,33 @@ int blocksAcross(int pixels, int shift) {
 
 } // namespace
 
-MomentTable::MomentTable(const Image& latlong, double absolute_energy, int shift, int threads)
+MomentTable::MomentTable(const Image& latlong, int shift, int threads)
     : pixel_width_(latlong.width),
       pixel_height_(latlong.height),
       shift_(shift),
       table_(blocksAcross(latlong.width, shift), blocksAcross(latlong.height, shift)) {
-    const double scale = absolute_energy > 0 ? std::ldexp(1.0, 62) / absolute_energy : 0.0;
+    static_assert(sizeof(Sums) == 4 * sizeof(double));
     const ColumnMoments columns = columnMoments(pixel_width_);
-    parallelFor(static_cast<std::size_t>(table_.bands()), threads, [&](std::size_t band) {
-        std::vector<double> blocks(4 * static_cast<std::size_t>(width()));
-        table_.fillBand(static_cast<int>(band), [&](int y, const Sums* above, Sums* below) {
-            std::fill(blocks.begin(), blocks.end(), 0.0);
+    std::vector<double> energies(static_cast<std::size_t>(height()));
+    parallelForRuns(energies.size(), 32, threads, [&](std::size_t begin, std::size_t end) {
+        for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+            double* blocks = reinterpret_cast<double*>(table_.place(y));
+            std::fill_n(blocks, 4 * static_cast<std::size_t>(width()), 0.0);
             for (int j = y << shift_; j < std::min(pixel_height_, (y + 1) << shift_); ++j) {
                 const RowMoments row = rowMoments(pixel_width_, pixel_height_, j);
-                const double weights[4] = {scale * row.solid_angle, scale * row.horizontal,
-                                           scale * row.vertical, scale * row.horizontal};
-                addPixelRow(latlong.row(j), columns, weights, shift_, blocks.data());
+                const double weights[4] = {row.solid_angle, row.horizontal, row.vertical,
+                                           row.horizontal};
+                addPixelRow(latlong.row(j), columns, weights, shift_, blocks);
             }
-            addBlockRow(blocks.data(), width(), above, below);
+            for (int i = 0; i < width(); ++i)
+                energies[static_cast<std::size_t>(y)] += blocks[4 * i];
+        }
+    });
+    const double energy = std::accumulate(energies.begin(), energies.end(), 0.0);
+    const double scale = energy > 0 ? std::ldexp(1.0, 62) / energy : 0.0;
+    parallelFor(static_cast<std::size_t>(table_.bands()), threads, [&](std::size_t band) {
+        table_.fillBand(static_cast<int>(band), [&](int, const Sums* above, Sums* below) {
+            addBlockRow(width(), scale, above, below);
         });
     });
     table_.addUpBands();

@@ -20,8 +20,7 @@ public:
     };
 
     /// Of blocks of 2^shift x 2^shift pixels, the last ones smaller; takes 32 bytes a block.
-    /// `absolute_energy` is the probe's LuminousEnergy::absolute.
-    MomentTable(const Image& latlong, double absolute_energy, int shift, int threads);
+    MomentTable(const Image& latlong, int shift, int threads);
 
     /// In blocks, as all regions here.
     int width() const { return table_.width(); }

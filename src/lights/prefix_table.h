@@ -35,6 +35,10 @@ public:
     int height() const { return height_; }
     int bands() const { return (height_ + kBand - 1) / kBand; }
 
+    /// Where row j's sums will stand, but for the first, which is 0. Free for other use until
+    /// fillBand() comes to the row.
+    Sum* place(int j) { return &within_[(static_cast<std::size_t>(j) + 1) * stride_ + 1]; }
+
     /// Fills band `band`: `row(j, above, below)` sets below[i] = above[i] + the sum of row j's
     /// pixels left of i, for i = 0 .. width.
     template <class Row>

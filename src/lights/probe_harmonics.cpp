@@ -6,7 +6,6 @@
 #include "core/parallel.h"
 #include "lights/harmonic_sums.h"
 #include "lights/lit_lanes.h"
-#include "lights/summed_area.h"
 
 #include <algorithm>
 #include <cmath>
@@ -98,28 +97,38 @@ void addRows(const Image& probe, const std::vector<RowTap>& taps, float* line) {
 
 /// Spreads the line's pixels (RGB, and one float after the last) over the grid's columns of four
 /// floats, which are zero before; the taps reach one column beyond the left, three the right. The
-/// four columns that pixels go to are kept in registers until no pixel goes to them any more.
+/// four columns that pixels go to are kept in registers until no pixel goes to them any more, in
+/// two sums for pixels in turn, so that one addition need not wait for the other.
 IBL_MULTIVERSION
 void spreadColumns(const float* line, const std::vector<ColumnTap>& columns, float* grid) {
-    FloatLanes sums[4]{};
+    FloatLanes sums[2][4]{};
     int first = columns[0].first;
-    const auto put = [&](const FloatLanes& sum) __attribute__((always_inline)) {
+    const auto put = [&](std::size_t k) __attribute__((always_inline)) {
+        const FloatLanes sum = sums[0][k] + sums[1][k];
         __builtin_memcpy(grid + 4 * (first++ + 1), &sum, sizeof sum);
     };
-    for (std::size_t i = 0; i < columns.size(); ++i) {
-        while (first < columns[i].first) {
-            put(sums[0]);
-            for (std::size_t k = 0; k < 3; ++k)
-                sums[k] = sums[k + 1];
-            sums[3] = FloatLanes{};
-        }
+    const auto add = [&](std::size_t i, FloatLanes * to) __attribute__((always_inline)) {
         FloatLanes pixel;
         __builtin_memcpy(&pixel, line + 3 * i, sizeof pixel);
         for (std::size_t k = 0; k < 4; ++k)
-            sums[k] += columns[i].weight[k] * pixel;
+            to[k] += columns[i].weight[k] * pixel;
+    };
+    for (std::size_t i = 0; i < columns.size();) {
+        while (first < columns[i].first) {
+            put(0);
+            for (FloatLanes* half : sums) {
+                for (std::size_t k = 0; k < 3; ++k)
+                    half[k] = half[k + 1];
+                half[3] = FloatLanes{};
+            }
+        }
+        add(i, sums[0]);
+        if (++i == columns.size() || columns[i].first != first) continue;
+        add(i, sums[1]);
+        ++i;
     }
-    for (const FloatLanes& sum : sums)
-        put(sum);
+    for (std::size_t k = 0; k < 4; ++k)
+        put(k);
 }
 
 /// A row of the grid, four floats a column, after one that is not part of it.
@@ -137,32 +146,43 @@ std::vector<float> gridRow(const Image& probe, const std::vector<RowTap>& rows,
     return ring;
 }
 
+/// Vectors of floats, which are exact enough: what they leave of a coefficient's error is spread
+/// over all rows.
+constexpr int kWaves = 8;
+typedef float WaveLanes __attribute__((vector_size(kWaves * sizeof(float))));
+
 /// cos and sin of m psi_c for c = 0 .. columns / 4, m fastest, `waves` of them a column.
 struct WaveTable {
-    int waves; ///< degree + 1, rounded up to whole pairs of vectors
-    std::vector<double> cosine, sine;
+    int waves; ///< degree + 1, rounded up to whole vectors
+    std::vector<float> cosine, sine;
 };
 
 WaveTable waveTable(int degree, int columns) {
-    WaveTable table{(degree + 2 * kLanes) / (2 * kLanes) * (2 * kLanes), {}, {}};
-    std::vector<double> cosine, sine;
+    WaveTable table{(degree + kWaves) / kWaves * kWaves, {}, {}};
+    std::vector<float> cosine, sine;
     for (int k = 0; k < columns; ++k) {
-        cosine.push_back(std::cos(2 * kPi * k / columns));
-        sine.push_back(std::sin(2 * kPi * k / columns));
+        cosine.push_back(static_cast<float>(std::cos(2 * kPi * k / columns)));
+        sine.push_back(static_cast<float>(std::sin(2 * kPi * k / columns)));
     }
+    for (std::vector<float>* values : {&table.cosine, &table.sine})
+        values->reserve(static_cast<std::size_t>(columns / 4 + 1) * table.waves);
     for (int c = 0; c <= columns / 4; ++c) {
-        for (int m = 0; m < table.waves; ++m) {
-            table.cosine.push_back(cosine[static_cast<std::size_t>(c * m % columns)]);
-            table.sine.push_back(sine[static_cast<std::size_t>(c * m % columns)]);
+        for (int m = 0, place = 0; m < table.waves; ++m) { // place = c m, modulo the columns
+            table.cosine.push_back(cosine[static_cast<std::size_t>(place)]);
+            table.sine.push_back(sine[static_cast<std::size_t>(place)]);
+            place = place + c < columns ? place + c : place + c - columns;
         }
     }
     return table;
 }
 
+/// For even and odd m.
+using EvenOdd = std::array<float, 2>;
+
 /// Columns half a turn apart differ by the sign (-1)^m, and those mirrored at a quarter turn by the
 /// sign of cosine or sine: a quarter of them is left.
 struct Folded {
-    std::array<double, kLanes> cosine[3], sine[3]; ///< by channel, for even and odd m in turn
+    EvenOdd cosine[3], sine[3]; ///< by channel
 };
 
 std::vector<Folded> fold(const float* grid, int columns) {
@@ -172,43 +192,47 @@ std::vector<Folded> fold(const float* grid, int columns) {
         const bool alone = c == 0 || c == quarter;
         const int d = half - c;
         for (int channel = 0; channel < 3; ++channel) {
-            const auto at = [&](int column) { return double{grid[4 * column + channel]}; };
-            const double plus = at(c) + at(c + half), minus = at(c) - at(c + half);
-            const double plus_d = alone ? 0 : at(d) + at(d + half);
-            const double minus_d = alone ? 0 : at(d) - at(d + half);
+            const auto at = [&](int column) { return grid[4 * column + channel]; };
+            const float plus = at(c) + at(c + half), minus = at(c) - at(c + half);
+            const float plus_d = alone ? 0 : at(d) + at(d + half);
+            const float minus_d = alone ? 0 : at(d) - at(d + half);
             Folded& f = folded[static_cast<std::size_t>(c)];
-            const double cosines[2] = {plus + plus_d, minus - minus_d};
-            const double sines[2] = {plus - plus_d, minus + minus_d};
-            for (std::size_t k = 0; k < kLanes; ++k) {
-                f.cosine[channel][k] = cosines[k % 2];
-                f.sine[channel][k] = sines[k % 2];
-            }
+            f.cosine[channel] = {plus + plus_d, minus - minus_d};
+            f.sine[channel] = {plus - plus_d, minus + minus_d};
         }
     }
     return folded;
 }
 
+/// Even, odd, even, odd, ...
+IBL_INLINE WaveLanes repeated(const EvenOdd& values) {
+    double both;
+    __builtin_memcpy(&both, values.data(), sizeof both);
+    return reinterpret_cast<WaveLanes>(Lanes{both, both, both, both});
+}
+
+IBL_INLINE WaveLanes loadWaves(const float* from) {
+    WaveLanes v;
+    __builtin_memcpy(&v, from, sizeof v);
+    return v;
+}
+
 /// sum_c x_c exp(-i m psi_c) of three channels: re, im, re, im, re, im, each of `waves` values.
 IBL_MULTIVERSION
-void waves(const WaveTable& table, const std::vector<Folded>& folded, double* out) {
-    for (int m = 0; m < table.waves; m += 2 * kLanes) {
-        Lanes sums[6]{}, next[6]{};
+void waves(const WaveTable& table, const std::vector<Folded>& folded, float* out) {
+    for (int m = 0; m < table.waves; m += kWaves) {
+        WaveLanes sums[6]{};
         for (std::size_t c = 0; c < folded.size(); ++c) {
             const std::size_t at = c * static_cast<std::size_t>(table.waves) + m;
-            const double *cosine = &table.cosine[at], *sine = &table.sine[at];
+            const WaveLanes cosine = loadWaves(&table.cosine[at]),
+                            sine = loadWaves(&table.sine[at]);
             for (std::size_t k = 0; k < 3; ++k) {
-                const Lanes with_cosine = loadLanes(folded[c].cosine[k].data());
-                const Lanes with_sine = loadLanes(folded[c].sine[k].data());
-                sums[2 * k] += with_cosine * loadLanes(cosine);
-                next[2 * k] += with_cosine * loadLanes(cosine + kLanes);
-                sums[2 * k + 1] -= with_sine * loadLanes(sine);
-                next[2 * k + 1] -= with_sine * loadLanes(sine + kLanes);
+                sums[2 * k] += repeated(folded[c].cosine[k]) * cosine;
+                sums[2 * k + 1] -= repeated(folded[c].sine[k]) * sine;
             }
         }
-        for (int k = 0; k < 6; ++k) {
+        for (int k = 0; k < 6; ++k)
             __builtin_memcpy(out + k * table.waves + m, &sums[k], sizeof sums[k]);
-            __builtin_memcpy(out + k * table.waves + m + kLanes, &next[k], sizeof next[k]);
-        }
     }
 }
 
@@ -217,16 +241,14 @@ struct GridWaves {
     int rows;
     int columns;
     int waves;
-    std::vector<double> values;
+    std::vector<float, UninitialisedAllocator<float>> values;
 
-    double* at(int row, int part) {
+    float* at(int row, int part) {
         return &values[(static_cast<std::size_t>(row) * 6 + part) * waves];
     }
 };
 
-/// `energies` gets the energy of each row of the probe.
-GridWaves gridWaves(const Image& probe, int degree, int threads,
-                    std::vector<LuminousEnergy>& energies) {
+GridWaves gridWaves(const Image& probe, int degree, int threads) {
     const WaveTable table = waveTable(degree, 8 * degree);
     GridWaves grid{4 * degree, 8 * degree, table.waves, {}};
     const int all_rows = grid.rows + 2 * kMargin;
@@ -237,9 +259,6 @@ GridWaves gridWaves(const Image& probe, int degree, int threads,
     const int runs = (all_rows + kRun - 1) / kRun;
     parallelFor(static_cast<std::size_t>(runs), threads, [&](std::size_t index) {
         const int run = static_cast<int>(index);
-        // About the rows that the run takes from, so that they are in the cache.
-        for (long j = long{run} * probe.height / runs; j < (run + 1L) * probe.height / runs; ++j)
-            energies[static_cast<std::size_t>(j)] = luminousEnergyOfRow(probe, static_cast<int>(j));
         for (int r = run * kRun; r < std::min(all_rows, (run + 1) * kRun); ++r) {
             const auto ring =
                 gridRow(probe, rows[static_cast<std::size_t>(r)], columns, grid.columns);
@@ -253,11 +272,11 @@ GridWaves gridWaves(const Image& probe, int degree, int threads,
 void foldMargins(GridWaves& grid) {
     for (int k = 0; k < kMargin; ++k) {
         for (int part = 0; part < 6; ++part) {
-            const double *north = grid.at(k, part), *south = grid.at(grid.rows + kMargin + k, part);
-            double *to_north = grid.at(2 * kMargin - 1 - k, part),
-                   *to_south = grid.at(grid.rows + kMargin - 1 - k, part);
+            const float *north = grid.at(k, part), *south = grid.at(grid.rows + kMargin + k, part);
+            float *to_north = grid.at(2 * kMargin - 1 - k, part),
+                  *to_south = grid.at(grid.rows + kMargin - 1 - k, part);
             for (int m = 0; m < grid.waves; ++m) {
-                const double sign = m % 2 ? -1 : 1;
+                const float sign = m % 2 ? -1 : 1;
                 to_north[m] += sign * north[m];
                 to_south[m] += sign * south[m];
             }
@@ -297,9 +316,8 @@ void addRowPairs(GridWaves& grid, const std::vector<double>& pixel, int begin, i
 
 } // namespace
 
-ProbeSums sumProbe(const Image& latlong, int degree, int threads) {
-    std::vector<LuminousEnergy> energies(static_cast<std::size_t>(latlong.height));
-    GridWaves grid = gridWaves(latlong, degree, threads, energies);
+LightHarmonics probeHarmonics(const Image& latlong, int degree, int threads) {
+    GridWaves grid = gridWaves(latlong, degree, threads);
     foldMargins(grid);
     std::vector<double> pixel; // a pixel's extent in psi, for each wave
     for (int m = 0; m <= degree; ++m) {
@@ -313,9 +331,9 @@ ProbeSums sumProbe(const Image& latlong, int degree, int threads) {
         const int begin = static_cast<int>(run) * kRun;
         addRowPairs(grid, pixel, begin, std::min(half, begin + kRun), parts[run]);
     });
-    ProbeSums total{LightHarmonics(degree), luminousEnergy(energies)};
+    LightHarmonics total(degree);
     for (const LightHarmonics& part : parts)
-        total.harmonics += part;
+        total += part;
     return total;
 }
 

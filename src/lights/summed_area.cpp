@@ -5,22 +5,29 @@
 #include "panorama/conventions.h"
 
 #include <cmath>
+#include <numeric>
+#include <vector>
 
 namespace ibl {
 namespace {
 
+/// The row's luminances, negative ones as 0. Returns their sum.
 IBL_MULTIVERSION
-LuminousEnergy luminanceOfRow(const float* rgb, int width) {
-    Lanes lit{}, absolute{};
-    const auto add = [&](const PixelLanes& p) __attribute__((always_inline)) {
-        lit += litLuminance(p);
-        absolute += absoluteLuminance(p);
-    };
+double writeLuminances(const float* rgb, int width, double* to) {
+    Lanes sum{};
     int i = 0;
-    for (; i + kLanes <= width; i += kLanes)
-        add(pixelLanes(rgb + 3 * i));
-    if (i < width) add(lastPixelLanes(rgb + 3 * i, width - i));
-    return {sumOf(lit), sumOf(absolute)};
+    for (; i + kLanes <= width; i += kLanes) {
+        fetchAhead(rgb + 3 * i);
+        const Lanes luminance = litLuminance(pixelLanes(rgb + 3 * i));
+        __builtin_memcpy(to + i, &luminance, sizeof luminance);
+        sum += luminance;
+    }
+    if (i < width) {
+        const Lanes luminance = litLuminance(lastPixelLanes(rgb + 3 * i, width - i));
+        __builtin_memcpy(to + i, &luminance, static_cast<std::size_t>(width - i) * sizeof(double));
+        sum += luminance;
+    }
+    return sumOf(sum);
 }
 
 /// Sums up to each of four values: shifted by one and added, then by two.
@@ -30,15 +37,16 @@ IBL_INLINE LongLanes runningSums(LongLanes v) {
     return v + __builtin_shufflevector(zero, v, 0, 0, 4, 5);
 }
 
+/// Makes the row's luminances, which stand where its sums will, those sums.
 IBL_MULTIVERSION
-void addEnergyRow(const float* rgb, int width, double weight, const std::int64_t* above,
-                  std::int64_t* below) {
+void addEnergyRow(int width, double weight, const std::int64_t* above, std::int64_t* below) {
     LongLanes before{};
     below[0] = 0;
     int i = 0;
     for (; i + kLanes <= width; i += kLanes) {
-        fetchAhead(rgb + 3 * i);
-        LongLanes sums = runningSums(rounded(weight * litLuminance(pixelLanes(rgb + 3 * i))));
+        Lanes luminance;
+        __builtin_memcpy(&luminance, below + i + 1, sizeof luminance);
+        LongLanes sums = runningSums(rounded(weight * luminance));
         sums += before;
         before = __builtin_shufflevector(sums, sums, 3, 3, 3, 3);
         LongLanes up;
@@ -47,48 +55,37 @@ void addEnergyRow(const float* rgb, int width, double weight, const std::int64_t
         __builtin_memcpy(below + i + 1, &up, sizeof up);
     }
     if (i == width) return;
-    const LongLanes last =
-        before +
-        runningSums(rounded(weight * litLuminance(lastPixelLanes(rgb + 3 * i, width - i))));
+    Lanes luminance{};
+    __builtin_memcpy(&luminance, below + i + 1,
+                     static_cast<std::size_t>(width - i) * sizeof(double));
+    const LongLanes last = before + runningSums(rounded(weight * luminance));
     for (int k = 0; i < width; ++i, ++k)
         below[i + 1] = above[i + 1] + last[k];
 }
 
 } // namespace
 
-LuminousEnergy luminousEnergyOfRow(const Image& latlong, int row) {
-    const LuminousEnergy sums = luminanceOfRow(latlong.row(row), latlong.width);
-    const double solid_angle = latlongPixelSolidAngle(latlong.width, latlong.height, row);
-    return {sums.lit * solid_angle, sums.absolute * solid_angle};
-}
-
-LuminousEnergy luminousEnergy(const std::vector<LuminousEnergy>& rows) {
-    LuminousEnergy total;
-    for (const LuminousEnergy& row : rows) {
-        total.lit += row.lit;
-        total.absolute += row.absolute;
-    }
-    return total;
-}
-
-LuminousEnergy luminousEnergy(const Image& latlong, int threads) {
-    std::vector<LuminousEnergy> rows(static_cast<std::size_t>(latlong.height));
-    parallelFor(rows.size(), threads, [&](std::size_t j) {
-        rows[j] = luminousEnergyOfRow(latlong, static_cast<int>(j));
+SummedAreaTable::SummedAreaTable(const Image& latlong, int threads)
+    : table_(latlong.width, latlong.height) {
+    static_assert(sizeof(double) == sizeof(std::int64_t));
+    const auto solidAngle = [&](int j) {
+        return latlongPixelSolidAngle(latlong.width, latlong.height, j);
+    };
+    std::vector<double> energies(static_cast<std::size_t>(latlong.height));
+    parallelForRuns(energies.size(), 32, threads, [&](std::size_t begin, std::size_t end) {
+        for (int j = static_cast<int>(begin); j < static_cast<int>(end); ++j) {
+            double* place = reinterpret_cast<double*>(table_.place(j));
+            energies[static_cast<std::size_t>(j)] =
+                solidAngle(j) * writeLuminances(latlong.row(j), latlong.width, place);
+        }
     });
-    return luminousEnergy(rows);
-}
-
-SummedAreaTable::SummedAreaTable(const Image& latlong, double lit_energy, int threads)
-    : table_(latlong.width, latlong.height),
-      scale_(lit_energy > 0 ? std::ldexp(1.0, 62) / lit_energy : 0.0) {
+    const double energy = std::accumulate(energies.begin(), energies.end(), 0.0);
+    scale_ = energy > 0 ? std::ldexp(1.0, 62) / energy : 0.0;
     parallelFor(static_cast<std::size_t>(table_.bands()), threads, [&](std::size_t band) {
-        table_.fillBand(
-            static_cast<int>(band), [&](int j, const std::int64_t* above, std::int64_t* below) {
-                addEnergyRow(latlong.row(j), latlong.width,
-                             scale_ * latlongPixelSolidAngle(latlong.width, latlong.height, j),
-                             above, below);
-            });
+        table_.fillBand(static_cast<int>(band),
+                        [&](int j, const std::int64_t* above, std::int64_t* below) {
+                            addEnergyRow(latlong.width, scale_ * solidAngle(j), above, below);
+                        });
     });
     table_.addUpBands();
 }

@@ -5,20 +5,8 @@
 #include "lights/prefix_table.h"
 
 #include <cstdint>
-#include <vector>
 
 namespace ibl {
-
-/// Luminance times solid angle.
-struct LuminousEnergy {
-    double lit = 0;      ///< negative luminances as 0
-    double absolute = 0; ///< negative luminances by their magnitude
-};
-
-/// Of a row of pixels, and of the whole probe, the rows' added from the top.
-LuminousEnergy luminousEnergyOfRow(const Image& latlong, int row);
-LuminousEnergy luminousEnergy(const std::vector<LuminousEnergy>& rows);
-LuminousEnergy luminousEnergy(const Image& latlong, int threads);
 
 /// Sums of luminance times solid angle over rectangles.
 ///
@@ -28,9 +16,9 @@ LuminousEnergy luminousEnergy(const Image& latlong, int threads);
 /// rounded to 2e-19 of the total. Integer sums do not depend on their order either.
 class SummedAreaTable {
 public:
-    /// `latlong` has three channels and finite pixels, `lit_energy` its LuminousEnergy::lit.
-    /// Negative luminances count as 0. Takes 8 bytes a pixel.
-    SummedAreaTable(const Image& latlong, double lit_energy, int threads);
+    /// `latlong` has three channels and finite pixels. Negative luminances count as 0. Takes 8
+    /// bytes a pixel.
+    SummedAreaTable(const Image& latlong, int threads);
 
     int width() const { return table_.width(); }
     int height() const { return table_.height(); }

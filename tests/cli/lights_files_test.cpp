@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <sstream>
+
 namespace ibl {
 namespace {
 
@@ -71,6 +73,30 @@ TEST(Lights, FormatsByExtensionOrByName) {
             runTool({"lights", "builtin:sky", "-n", "3", "--format", format}, scratch.path()).out;
         EXPECT_EQ(out, readFile(scratch / name));
         EXPECT_NE(out.find("builtin:sky"), std::string::npos) << out;
+    }
+}
+
+// A glTF light shines along its node's -Z, so that +Z points towards it.
+TEST(Lights, AssimpReadsTheGltf) {
+    const Scratch scratch;
+    const Json lights = lightsOf({"builtin:compass", "-n", "20"}, scratch).at("lights");
+    runTool({"lights", "builtin:compass", "-n", "20", "-o", "l.gltf"}, scratch.path());
+    const std::string info = runProgram({"assimp", "info", "l.gltf", "-r"}, scratch.path()).out;
+    const std::size_t count = info.find("Lights:");
+    ASSERT_NE(count, std::string::npos) << info;
+    EXPECT_EQ(std::stoi(info.substr(count + 7)), 20);
+    runProgram({"assimp", "dump", "l.gltf", "l.xml", "-r"}, scratch.path());
+    const std::string nodes = readFile(scratch / "l.xml");
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        const std::string name = "<Node name=\"light_" + std::to_string(i) + "\">";
+        ASSERT_NE(nodes.find(name), std::string::npos) << nodes;
+        std::istringstream matrix(nodes.substr(nodes.find("<Matrix4>", nodes.find(name)) + 9));
+        for (std::size_t row = 0; row < 3; ++row) {
+            double x, y, z, shift;
+            matrix >> x >> y >> z >> shift;
+            EXPECT_NEAR(z, lights[i]["direction"][row].get<double>(), 2e-6) << i;
+            EXPECT_EQ(shift, 0);
+        }
     }
 }
 

@@ -44,14 +44,14 @@ V3d turned(const V3d& q, double w, const V3d& v) {
 
 TEST(LightsJson, NamesUnitsAndReadsBack) {
     const LightSet set = someLights(5);
-    const auto json = nlohmann::json::parse(lightsJson(set));
+    const auto json = nlohmann::json::parse(lightsJson(set, 2));
     EXPECT_EQ(json.at("units").at("solid_angle"), "steradian");
     ASSERT_EQ(json.at("lights").size(), 5u);
     double share = 0;
     for (const auto& light : json["lights"])
         share += light.at("share").get<double>();
     EXPECT_NEAR(share, 1, 1e-12);
-    const LightSet back = readLightsJson(lightsJson(set), "x");
+    const LightSet back = readLightsJson(lightsJson(set, 2), "x");
     EXPECT_EQ(back.method, set.method);
     EXPECT_EQ(back.irradiance_error, set.irradiance_error);
     for (std::size_t i = 0; i < 5; ++i) {
@@ -63,7 +63,7 @@ TEST(LightsJson, NamesUnitsAndReadsBack) {
 }
 
 TEST(LightsJson, HostileTextIsRefused) {
-    const std::string whole = lightsJson(someLights(2));
+    const std::string whole = lightsJson(someLights(2), 2);
     for (std::size_t length = 0; length + 2 < whole.size(); length += 7)
         EXPECT_THROW(readLightsJson(whole.substr(0, length), "x"), Error) << length;
     for (const char* text : {"[]", "{\"lights\": 3}", "null", "{\"lights\": [{\"id\": 1}]}"})

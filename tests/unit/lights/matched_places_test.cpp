@@ -6,6 +6,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <utility>
+#include <vector>
+
 namespace ibl {
 namespace {
 
@@ -69,6 +73,47 @@ TEST(MatchedPlaces, TheProbesHarmonicsComeNear) {
     const double before = lack(lights, probe);
     matchPlaces(lights, probe, 2);
     EXPECT_LT(lack(lights, probe), 0.2 * before);
+}
+
+/// The coefficients of degree l, one order after the other.
+std::vector<LightHarmonics::Parts*> degreeOf(LightHarmonics& harmonics, int l) {
+    if (l == 1) return {&harmonics.first[0], &harmonics.first[1]};
+    std::vector<LightHarmonics::Parts*> parts;
+    for (int m = 0; m <= l; ++m)
+        parts.push_back(
+            &harmonics.even[harmonics.column(m) + static_cast<std::size_t>(l - m - m % 2) / 2]);
+    return parts;
+}
+
+// One light, and a probe that is this light but for one degree, in which it stands at w from there.
+// The move nearest to all degrees, in irradiance, is w times the part that this degree has in
+//
+//     sum over l of A_l^2 sum over m of |grad Y_lm|^2,   the inner sum l (l + 1) (2l + 1) / (4 pi).
+TEST(MatchedPlaces, DegreesWeighAsInIrradiance) {
+    const std::pair<int, double> kernel[] = {{1, 2 * kPi / 3}, {2, kPi / 4}, {4, -kPi / 24}};
+    double whole = 0;
+    for (const auto& [l, a] : kernel)
+        whole += a * a * l * (l + 1) * (2 * l + 1);
+    Light light;
+    light.direction = V3d(2, 3, 6) / 7.0;
+    light.irradiance = V3d(1, 0.5, 0.7);
+    light.radius = 0.5;
+    Light aside = light;
+    const V3d tangent = V3d(3, -2, 0) / std::sqrt(13.0);
+    aside.direction = (light.direction + 0.01 * tangent).normalized();
+    for (const auto& [l, a] : kernel) {
+        LightHarmonics probe = lightHarmonics({light}, 4, 1);
+        LightHarmonics other = lightHarmonics({aside}, 4, 1);
+        const auto to = degreeOf(probe, l), from = degreeOf(other, l);
+        for (std::size_t i = 0; i < to.size(); ++i)
+            *to[i] = *from[i];
+        std::vector<Light> lights{light};
+        matchPlaces(lights, probe, 1);
+        const V3d move = (lights[0].direction - light.direction) / 0.01;
+        const double part = a * a * l * (l + 1) * (2 * l + 1) / whole;
+        EXPECT_NEAR(move.dot(tangent), part, 0.02 * part) << l;
+        EXPECT_LT((move - move.dot(tangent) * tangent).length(), 0.02 * part + 0.01) << l;
+    }
 }
 
 TEST(MatchedPlaces, MovesAreLessThanHalfTheRadius) {

@@ -48,7 +48,7 @@ double bruteVariance(const Image& image, const PixelRegion& r) {
 
 TEST(MomentTable, VarianceIsThatOfThePoints) {
     const Image image = noise(37, 19, 41);
-    const MomentTable table(image, luminousEnergy(image, 1).absolute, 0, 2);
+    const MomentTable table(image, 0, 2);
     for (const PixelRegion r : {PixelRegion{0, 0, 37, 19}, PixelRegion{5, 3, 7, 9},
                                 PixelRegion{30, 0, 20, 4}, PixelRegion{36, 18, 1, 1}}) {
         const double expected = bruteVariance(image, r);
@@ -59,10 +59,9 @@ TEST(MomentTable, VarianceIsThatOfThePoints) {
 
 TEST(MomentTable, BlocksHoldTheirPixels) {
     const Image image = noise(37, 19, 41);
-    const double energy = luminousEnergy(image, 1).absolute;
-    const MomentTable fine(image, energy, 0, 2);
+    const MomentTable fine(image, 0, 2);
     for (const int shift : {1, 2, 3}) {
-        const MomentTable coarse(image, energy, shift, 2);
+        const MomentTable coarse(image, shift, 2);
         const int width = coarse.width(), height = coarse.height();
         EXPECT_EQ(width, (37 + (1 << shift) - 1) >> shift);
         for (const PixelRegion blocks :
@@ -80,7 +79,7 @@ TEST(MomentTable, BlocksHoldTheirPixels) {
 TEST(MomentTable, ADimRegionBesideASunIsNotLost) {
     Image image = filled(128, 64, 1e-3f);
     setPixel(image, 10, 5, 1e9f, 1e9f, 1e9f);
-    const MomentTable table(image, luminousEnergy(image, 1).absolute, 0, 2);
+    const MomentTable table(image, 0, 2);
     const PixelRegion dim{100, 30, 8, 6};
     const double expected = bruteVariance(image, dim);
     EXPECT_NEAR(table.variance(dim) / static_cast<double>(table.energy(dim)), expected,
@@ -88,7 +87,7 @@ TEST(MomentTable, ADimRegionBesideASunIsNotLost) {
 }
 
 TEST(VarianceCut, EachCutMakesTheLargerVarianceLeast) {
-    const MomentTable table(noise(24, 12, 42), luminousEnergy(noise(24, 12, 42), 1).absolute, 0, 1);
+    const MomentTable table(noise(24, 12, 42), 0, 1);
     const CutTree tree = varianceCut(table, 20);
     for (std::size_t k = 0; k < tree.cut.size(); ++k) {
         const PixelRegion& whole = tree.nodes[static_cast<std::size_t>(tree.cut[k])];
@@ -238,7 +237,7 @@ TEST(AllMethods, ASunOverAPoleIsOneDirection) {
 TEST(Importance, AnyPrefixOfTheSphereGetsItsShareOfLights) {
     const Image image = noise(64, 32, 45);
     const std::vector<Light> lights = lightsOfProbe(image, LightMethod::importance, 4096).lights;
-    const SummedAreaTable table(image, luminousEnergy(image, 1).lit, 1);
+    const SummedAreaTable table(image, 1);
     const double total = static_cast<double>(table.energy({0, 0, 64, 32}));
     for (const PixelRegion r :
          {PixelRegion{0, 0, 32, 32}, PixelRegion{0, 0, 64, 9}, PixelRegion{10, 5, 30, 20}}) {
