@@ -62,13 +62,13 @@ def material(name):
         bsdf.distribution = "SHARP"
     elif name == "diffuse":
         bsdf = node("ShaderNodeBsdfDiffuse", Color=white, Roughness=0)
-    # Glass is the sum of what its first face mirrors and of what it lets in, weighted instead of
-    # chosen by chance: else the mirrored sun is noise.
+    # Cycles' Glass, but the sum of what its first face mirrors and of what it lets in, weighted
+    # instead of chosen by chance: else the mirrored sun is noise.
     elif name == "glass_mirror":
         bsdf = node("ShaderNodeBsdfGlossy", Roughness=0)
         bsdf.distribution = "SHARP"
         links.new(node("ShaderNodeFresnel", IOR=IOR).outputs[0], bsdf.inputs["Color"])
-    elif name.startswith("glass"):
+    elif name == "glass_inside":
         first = node("ShaderNodeBsdfRefraction", Roughness=0, IOR=IOR)
         first.distribution = "SHARP"
         let_in = nodes.new("ShaderNodeMath")
@@ -76,8 +76,7 @@ def material(name):
         let_in.inputs[0].default_value = 1
         links.new(node("ShaderNodeFresnel", IOR=IOR).outputs[0], let_in.inputs[1])
         links.new(let_in.outputs[0], first.inputs["Color"])
-        kind = "Glass" if name == "glass_inside" else "Refraction"
-        second = node("ShaderNodeBsdf" + kind, Color=white, Roughness=0, IOR=IOR)
+        second = node("ShaderNodeBsdfGlass", Color=white, Roughness=0, IOR=IOR)
         second.distribution = "SHARP"
         bsdf = nodes.new("ShaderNodeMixShader")
         links.new(nodes.new("ShaderNodeNewGeometry").outputs["Backfacing"], bsdf.inputs[0])

@@ -1,9 +1,12 @@
-// The ground that shows a shadow and nothing else (differential rendering, Debevec 1998): what is behind
-// the object plus (ground with object - ground without). The ground is diffuse, so that the difference is
-// -albedo / pi times the irradiance that the object keeps away. Without a known albedo it is taken to
-// reflect as it looks: then the picture is scaled by the irradiance with over that without the object.
-// Over nothing the shadow is alpha, with black, by the luminance of that ratio. Defined: GROUND_ALBEDO
-// (known), GROUND_ALPHA (over nothing).
+// The ground that shows a shadow and nothing else (differential rendering, Debevec 1998): what is
+// behind the object plus (ground with object - ground without). The ground is diffuse, so that of
+// its radiance albedo E / pi, E the irradiance without the object, the share D / E is lost of which
+// the object keeps D away. What is behind may be darker than albedo E / pi, where the ground in the
+// picture has a smaller albedo or already stands in shadow: then the difference would be more than
+// there is, and the picture itself loses that share (the relative error of the same paper). The two
+// agree where they meet, and the choice is the same in and out of the shadow, so neither draws an
+// edge. Without a known albedo it is always the latter. Over nothing the shadow is alpha, with
+// black, by the luminance of D / E. Defined: GROUND_ALBEDO (known), GROUND_ALPHA (over nothing).
 layout(binding = 9) uniform sampler2D kept; // from the ground, by this batch's lights
 uniform vec3 ground_irradiance;             // of all directional lights, without the object
 #if GROUND_ALBEDO
@@ -29,11 +32,13 @@ void main() {
         const vec3 luminance = vec3(0.2125, 0.7154, 0.0721);
         float light = dot(whole, luminance);
         if (light > 0.0) picture.a += dot(lost, luminance) / light;
-#elif GROUND_ALBEDO
-        picture.rgb -= ground_albedo / 3.14159265358979 * lost;
 #else
+        vec3 radiance = behind().rgb; // of which the share is lost
+#if GROUND_ALBEDO
+        radiance = min(radiance, ground_albedo / 3.14159265358979 * whole);
+#endif
         vec3 share = lost / max(whole, 1e-30);
-        picture.rgb -= behind().rgb * mix(vec3(0.0), share, greaterThan(whole, vec3(0.0)));
+        picture.rgb -= radiance * mix(vec3(0.0), share, greaterThan(whole, vec3(0.0)));
 #endif
     }
     color = picture;

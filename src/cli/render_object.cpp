@@ -44,16 +44,18 @@ ObjectFile readNamed(Session& session, const std::string& name) {
     if (std::optional<Object> builtin = builtinObject(name))
         return {std::move(*builtin), {}, {}, {}};
     std::error_code ignored;
-    if (!std::filesystem::path(name).has_extension() && !std::filesystem::exists(name, ignored)) {
+    const std::filesystem::path path(name);
+    if (!path.has_extension() && !path.has_parent_path() &&
+        !std::filesystem::exists(path, ignored)) {
         std::string names;
         for (const std::string_view known : builtinObjectNames())
             names.append(" ").append(known);
-        throw inputError("--object " + name,
-                         "no such object; there are" + names + ", or an OBJ, PLY or glTF file");
+        throw Error(ExitCode::usage, "--object " + name + ": no such object; there are" + names +
+                                         ", or an OBJ, PLY or glTF file");
     }
     ObjectFile file = session.stage("mesh", [&] { return readObject(name, session.threads()); });
-    for (const std::string& path : file.files)
-        session.addInput(path);
+    for (const std::string& read : file.files)
+        session.addInput(read);
     for (const std::string& text : file.notes)
         session.note(name, text);
     return file;

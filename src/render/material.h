@@ -23,7 +23,7 @@ enum class Shader {
     mirror,        ///< c L(r)
     diffuse,       ///< c E(n) / pi: c is the albedo
     mirrorDiffuse, ///< (1 - k) c E(n) / pi + k L(r)
-    glass,         ///< F L(r) + (1 - F) c L(t): t what has been refracted at both faces
+    glass,         ///< F L(r) + (1 - F) c L(t): L(t) through both faces
     dispersion,    ///< the same with an index for each channel
     coat,          ///< F L(r) + (1 - F) c E(n) / pi: F of a clear, smooth coat
     ggx,           ///< metallic-roughness: microfacets over a Lambertian base

@@ -114,7 +114,6 @@ std::vector<std::string> Renderer::State::mapDefinitions() const {
         define({"GROUND_ALBEDO " + std::to_string(ground->albedo.has_value()),
                 "GROUND_ALPHA " + std::to_string(!opaque)});
     }
-    define({"KEEP_POSITIVE " + std::to_string(ground && ground->albedo)});
     return definitions;
 }
 

@@ -27,9 +27,10 @@ using Background = std::variant<ProbeBackground, NoBackground, ColorBackground, 
 /// light that the ground sends there.
 struct Ground {
     double height = -1; ///< y; no part of the object lies below
-    /// With it, the light that the object takes away is E albedo / pi; without it, the ground
-    /// reflects as it looks in each pixel: the background is scaled by the irradiance with over
-    /// that without the object.
+    /// With it, the light that the object takes away is albedo / pi times the irradiance that it
+    /// keeps off, where the background is that of such a ground or brighter. Elsewhere and without
+    /// it, the ground reflects as it looks in each pixel: the background is scaled by the
+    /// irradiance with over that without the object.
     std::optional<V3d> albedo;
 };
 

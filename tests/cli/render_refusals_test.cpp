@@ -25,7 +25,8 @@ TEST(Render, Refusals) {
     refused({"--size", "64x-1"}, 1, "--size");
     refused({"--size", "100000x8"}, 1, "16384");
     refused({"--samples", "0"}, 1, "--samples");
-    refused({"--object", "pyramid"}, 2, "pyramid");
+    refused({"--object", "pyramid"}, 1, "pyramid");
+    refused({"--object", "nowhere/pyramid"}, 2, "nowhere/pyramid");
     refused({"--object", "missing.obj"}, 2, "missing.obj");
     refused({"--shader", "wood"}, 1, "--shader");
     refused({"--tonemap", "magic"}, 1, "--tonemap");

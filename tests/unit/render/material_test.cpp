@@ -74,23 +74,54 @@ Panorama smoothProbe() {
     return probe;
 }
 
-TEST(Materials, GlassSphereIsTwoRefractions) {
+/// What comes through the unit sphere where f is mirrored each time: the ray is followed inside,
+/// and what is left at the last of four exits leaves there.
+V3d radianceThrough(const Panorama& probe, const V3d& n, const V3d& d, double ior, double f) {
+    V3d t = refracted(d, n, 1 / ior), at = n, sum(0);
+    double left = 1;
+    for (int exit = 1; exit <= 4; ++exit) {
+        at -= t * (2 * at.dot(t));
+        const double leaves = exit < 4 ? left * (1 - f) : left;
+        sum += radianceAt(probe, refracted(t, -at, ior)) * leaves;
+        left *= f;
+        t = reflected(t, at);
+    }
+    return sum;
+}
+
+TEST(Materials, GlassSphereMirrorsInside) {
     const Panorama probe = noiseProbe(Layout::latlong, 32, 16);
-    for (const double ior : {1.0, 1.33, 1.5, 2.4}) {
-        Scene scene;
-        scene.probe = &probe;
-        scene.material = Material(Shader::glass);
+    Scene scene;
+    scene.probe = &probe;
+    scene.material = Material(Shader::glass);
+    scene.material[Parameter::baseColor] = {0.5, 1, 0.25};
+    const auto error = [&](double ior, const std::function<double(double)>& fresnel) {
         scene.material[Parameter::ior] = V3d(ior);
-        scene.material[Parameter::baseColor] = {0.5, 1, 0.25};
-        EXPECT_LT(sphereError(draw(scene), 0.05,
-                              [&](const V3d& n, const V3d& d) {
-                                  const double f = ior == 1 ? 0 : reflectance(-n.dot(d), ior);
-                                  return radianceAt(probe, reflected(d, n)) * f +
-                                         V3d(0.5, 1, 0.25) * (1 - f) *
-                                             radianceAt(probe, throughSphere(n, d, ior));
-                              }),
-                  1e-4)
-            << ior;
+        return sphereError(draw(scene), 0.05, [&](const V3d& n, const V3d& d) {
+            const double f = fresnel(-n.dot(d));
+            return radianceAt(probe, reflected(d, n)) * f +
+                   V3d(0.5, 1, 0.25) * (1 - f) * radianceThrough(probe, n, d, ior, f);
+        });
+    };
+    for (const double ior : {1.33, 1.5, 2.4})
+        EXPECT_LT(error(ior, [&](double c) { return reflectance(c, ior); }), 1e-4) << ior;
+    EXPECT_LT(error(1, [](double) { return 0.0; }), 1e-4);
+    scene.material[Parameter::fresnel] = {0.2, 0.7, 3}; // both faces have it
+    EXPECT_LT(error(1.5, [](double c) { return 0.2 + 0.7 * std::pow(1 - c, 3); }), 1e-4);
+}
+
+// Nothing is lost or won inside: 1 - F comes through, however many exits are followed.
+TEST(Materials, GlassSphereIsWhiteUnderAUniformProbe) {
+    const Panorama probe = constantProbe(1);
+    Scene scene;
+    scene.probe = &probe;
+    for (const Shader shader : {Shader::glass, Shader::dispersion}) {
+        for (const double bias : {-1.0, 0.0, 0.5, 1.0}) {
+            scene.material = Material(shader);
+            if (bias >= 0) scene.material[Parameter::fresnel] = {bias, 1, 2};
+            for (const float v : draw(scene).pixels)
+                ASSERT_NEAR(v, 1, 1e-6) << bias;
+        }
     }
 }
 
@@ -106,9 +137,8 @@ TEST(Materials, DispersionIsGlassOfEachChannelsIndex) {
                               V3d sum;
                               for (int c = 0; c < 3; ++c) {
                                   const double f = reflectance(-n.dot(d), ior[c]);
-                                  sum[c] =
-                                      radianceAt(probe, reflected(d, n))[c] * f +
-                                      radianceAt(probe, throughSphere(n, d, ior[c]))[c] * (1 - f);
+                                  sum[c] = radianceAt(probe, reflected(d, n))[c] * f +
+                                           radianceThrough(probe, n, d, ior[c], f)[c] * (1 - f);
                               }
                               return sum;
                           }),
@@ -161,7 +191,7 @@ Mesh sphereMesh(int columns, int rows) {
     return mesh;
 }
 
-TEST(Materials, GlassMeshIsNearlyTheExactSphere) {
+TEST(Materials, GlassMeshIsNearlyTheExactFirstExit) {
     const Panorama probe = smoothProbe();
     Scene scene;
     scene.probe = &probe;
@@ -175,7 +205,7 @@ TEST(Materials, GlassMeshIsNearlyTheExactSphere) {
     };
     const double inner = sphereError(frame, 0.5, expected);
     const double all = sphereError(frame, 0.1, expected);
-    std::printf("glass mesh against exact sphere: %.2e, to the silhouette %.2e\n", inner, all);
+    std::printf("glass mesh against exact first exit: %.2e, to the silhouette %.2e\n", inner, all);
     EXPECT_LT(inner, 0.01);
     EXPECT_LT(all, 0.03);
 }
