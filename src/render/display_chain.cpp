@@ -251,7 +251,8 @@ const Program& DisplayChain::State::lastProgram(ToneMap tone_map, bool straight,
         return std::string(name) + (on ? " 1" : " 0");
     };
     std::vector<std::string> definitions{flag("STRAIGHT", straight),
-                                         flag("GLOW", with_lens && glows()), flag("EVEN", even)};
+                                         flag("GLOW", with_lens && glows()), flag("EVEN", even),
+                                         flag("VIGNETTE", with_lens && options.vignette > 0)};
     std::string function(info.function);
     if (!info.curve.empty()) {
         definitions.push_back("CURVE " + std::string(info.curve));
@@ -270,7 +271,7 @@ const Program& DisplayChain::State::lastProgram(ToneMap tone_map, bool straight,
     setUniform(program, "threshold", options.threshold);
     setUniform(program, "bright_weight", options.bloom + options.streaks);
     setUniform(program, "glare_weight", options.glare);
-    setUniform(program, "vignette", with_lens ? options.vignette : 0.0);
+    setUniform(program, "vignette", options.vignette);
     setUniform(program, "key", options.key);
     return program;
 }
