@@ -123,16 +123,20 @@ void runBake(const BakeOptions& options) {
     how.type = options.type.value_or(PixelType::float32);
     how.threads = session.threads();
     session.stage("write", [&] {
+        const std::span<const PrefilterResult> chain_levels = std::span(results).subspan(1);
+        how.label = labelOf(requests[0].lobe);
         session.write(folder.file("diffuse." + options.format), results[0].map, how);
         const std::string specular = folder.file("specular." + options.format);
         if (isCubeContainer(specular)) {
             std::vector<const Image*> chain;
-            for (std::size_t k = 1; k < results.size(); ++k)
-                chain.push_back(&results[k].map.image);
+            for (const PrefilterResult& level : chain_levels)
+                chain.push_back(&level.map.image);
             session.write(specular, chain, how);
         } else {
-            for (std::size_t k = 1; k < results.size(); ++k)
-                session.write(levelName(specular, static_cast<int>(k) - 1), results[k].map, how);
+            writeChain(
+                session, specular, chain_levels,
+                chainLabels(Kernel::ggx, options.roughness_map, std::span(requests).subspan(1)),
+                how);
         }
         session.writeText(folder.file("lights.json"), lightsJson(lights));
         session.writeText(folder.file("sh.json"), shJson(sh, options.probe.input, false, 0));

@@ -103,6 +103,7 @@ void runDiffuse(const CLI::App& app, const DiffuseOptions& options) {
             ? ""
             : coefficientsText(session, latlong.image, options.sh, options.probe.input);
     session.stage("write", [&] {
+        how.label = labelOf({Kernel::lambert, 0});
         if (has_map) session.write(options.output.output, results[0].map, how);
         if (!sh.empty()) session.writeText(options.sh.file, sh);
     });

@@ -43,6 +43,7 @@ Json describe(const InfoOptions& options, const ProbeFile& file, const Census& c
     json["compression"] = file.metadata.compression;
     json["pixel_type"] = file.metadata.pixel_type;
     json["layers"] = file.metadata.layers;
+    if (!file.metadata.label.kernel.empty()) json["map"] = describe(file.metadata.label);
     json["exposure"] = file.metadata.exposure;
     json["colour_correction"] = jsonOf(file.metadata.colour_correction);
     json["layout"] = layoutName(file.panorama.layout);
@@ -94,6 +95,7 @@ void print(const InfoOptions& options, const ProbeFile& file, const Census& cens
     line("source", options.probe.input);
     line("format", format);
     if (!layers.empty()) line("layers", layers);
+    if (!metadata.label.kernel.empty()) line("map", describe(metadata.label));
     if (metadata.exposure != 1)
         line("exposure", std::to_string(metadata.exposure) + ", divided out");
     if (metadata.colour_correction != V3d(1)) {

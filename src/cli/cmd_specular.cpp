@@ -117,11 +117,12 @@ void runSpecular(const SpecularOptions& options) {
             session.write(output, levels, how);
             return;
         }
-        for (std::size_t k = 0; k < results.size(); ++k) {
-            const std::string name = options.levels
-                                         ? levelName(options.output.output, static_cast<int>(k))
-                                         : options.output.output;
-            session.write(name, results[k].map, how);
+        if (options.levels) {
+            writeChain(session, output, results,
+                       chainLabels(options.kernel, options.roughness_map, requests), how);
+        } else {
+            how.label = labelOf(requests[0].lobe);
+            session.write(output, results[0].map, how);
         }
     });
     session.finish();

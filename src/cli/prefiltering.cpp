@@ -168,6 +168,46 @@ void reportRoughness(Session& session, std::size_t first, int levels, RoughnessM
     }
 }
 
+MapLabel labelOf(const Lobe& lobe) {
+    const KernelRow& row = kernelRow(lobe.kernel);
+    MapLabel label;
+    label.kernel = row.name;
+    const auto parameter = static_cast<float>(lobe.parameter);
+    if (row.parameter == KernelParameter::roughness) label.roughness = parameter;
+    if (row.parameter == KernelParameter::exponent) label.exponent = parameter;
+    return label;
+}
+
+std::vector<MapLabel> chainLabels(Kernel kernel, RoughnessMap map,
+                                  std::span<const PrefilterRequest> requests) {
+    const int levels = static_cast<int>(requests.size());
+    std::vector<MapLabel> labels;
+    for (int k = 0; k < levels; ++k) {
+        MapLabel& label = labels.emplace_back(labelOf(requests[static_cast<std::size_t>(k)].lobe));
+        label.kernel = kernelRow(kernel).name; // level 0 is asked for as a mirror of GGX
+        label.roughness = static_cast<float>(levelRoughness(map, k, levels));
+        label.level = k;
+        label.levels = levels;
+    }
+    return labels;
+}
+
+void writeChain(Session& session, const std::string& path, std::span<const PrefilterResult> levels,
+                std::span<const MapLabel> labels, WriteOptions options) {
+    for (std::size_t k = 0; k < levels.size(); ++k) {
+        options.label = labels[k];
+        session.write(levelName(path, static_cast<int>(k)), levels[k].map, options);
+    }
+    const std::string next = levelName(path, static_cast<int>(levels.size()));
+    if (mapExists(next)) session.note(next, "is left of a longer chain; remove it");
+}
+
+bool mapExists(const std::string& path) {
+    std::error_code ignored;
+    if (std::filesystem::exists(path, ignored)) return true;
+    return std::filesystem::exists(probeFileNames(path, Layout::faces)[0], ignored);
+}
+
 std::string levelName(const std::string& path, int level) {
     const std::filesystem::path whole(path);
     std::filesystem::path name = whole;

@@ -62,6 +62,21 @@ std::vector<PrefilterRequest> chainRequests(Kernel kernel, int levels, Roughness
 /// Says in the report which roughness each level stands for; level 0 is the map `first`.
 void reportRoughness(Session& session, std::size_t first, int levels, RoughnessMap map);
 
+/// What the file of a lobe's map says of it.
+MapLabel labelOf(const Lobe& lobe);
+
+/// What the files of a chain's levels say of them. `requests`: as chainRequests makes them.
+std::vector<MapLabel> chainLabels(Kernel kernel, RoughnessMap map,
+                                  std::span<const PrefilterRequest> requests);
+
+/// Adds the levels of a chain to the outputs, each under its levelName, and says so if a longer
+/// chain has left levels beside them.
+void writeChain(Session& session, const std::string& path, std::span<const PrefilterResult> levels,
+                std::span<const MapLabel> labels, WriteOptions options);
+
+/// Whether there is a file of that name, or a first face of six.
+bool mapExists(const std::string& path);
+
 /// The name of level k of a chain: dir/p.exr gives dir/p_m0.exr.
 std::string levelName(const std::string& path, int level);
 

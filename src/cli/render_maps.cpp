@@ -10,7 +10,6 @@
 
 #include <bit>
 #include <cmath>
-#include <filesystem>
 
 namespace ibl {
 namespace {
@@ -44,26 +43,62 @@ std::vector<PrefilterRequest> specularRequests(const Panorama& probe, const Mate
     return {{{Kernel::ggx, roughness}, Layout::faces, edge}};
 }
 
-Panorama readMap(Session& session, const std::string& path) {
+struct ReadMap {
+    Panorama panorama;
+    MapLabel label;
+};
+
+ReadMap readMap(Session& session, const std::string& path) {
     ProbeOptions options;
     options.input = path;
-    Panorama map = session.readProbe(options);
-    if (isSquareMap(map.layout))
-        map = {Layout::latlong, latlongOf(std::move(map), session.threads())};
+    ProbeFile file = session.readScreened(options);
+    ReadMap map{std::move(file.panorama), std::move(file.metadata.label)};
+    if (isSquareMap(map.panorama.layout)) {
+        map.panorama = {Layout::latlong, latlongOf(std::move(map.panorama), session.threads())};
+    }
     return map;
 }
 
-bool levelExists(const std::string& path) {
-    std::error_code ignored;
-    if (std::filesystem::exists(path, ignored)) return true;
-    return std::filesystem::exists(probeFileNames(path, Layout::faces)[0], ignored);
+Panorama readDiffuse(Session& session, const std::string& path) {
+    ReadMap map = readMap(session, path);
+    if (!map.label.kernel.empty() && map.label.kernel != kernelRow(Kernel::lambert).name) {
+        throw inputError(path, "is no diffuse map but " + describe(map.label) +
+                                   "; name what ibltool diffuse has written");
+    }
+    return std::move(map.panorama);
 }
 
-/// What `specular --levels K` and `bake` write, roughness k / (K - 1).
+/// Throws unless a labelled level is the one that its name says, of the chain that level 0 began.
+void checkLevel(const std::string& name, const MapLabel& label, int level, int levels) {
+    if (!label.kernel.empty() && label.kernel != kernelRow(Kernel::ggx).name) {
+        throw inputError(name,
+                         "is " + describe(label) + "; --specular-map takes ggx, as bake writes it");
+    }
+    if (label.levels != levels || (levels > 0 && label.level != level)) {
+        throw inputError(name, "is not of the chain that level 0 is of (" + describe(label) +
+                                   "); write all levels again");
+    }
+    if (levels > 1 && label.roughness &&
+        std::abs(*label.roughness - levelRoughness(RoughnessMap::linear, level, levels)) > 1e-6) {
+        throw inputError(name, "is " + describe(label) +
+                                   "; --specular-map takes roughness level / (levels - 1), "
+                                   "--roughness-map linear");
+    }
+}
+
+/// What `specular --levels K` and `bake` write, roughness k / (K - 1). Levels that an earlier,
+/// longer chain has left are passed over where level 0 says how many there are.
 SpecularMaps readSpecular(Session& session, const std::string& path) {
+    if (isCubeContainer(path)) {
+        throw inputError(path, "KTX and DDS containers are written but not read; give a chain of "
+                               "EXR files");
+    }
     SpecularMaps maps;
-    for (int k = 0; levelExists(levelName(path, k)); ++k) {
-        Panorama level = readMap(session, levelName(path, k));
+    int levels = 0;
+    for (int k = 0; levels > 0 ? k < levels : mapExists(levelName(path, k)); ++k) {
+        const auto [level, label] = readMap(session, levelName(path, k));
+        if (k == 0) levels = label.levels;
+        checkLevel(levelName(path, k), label, k, levels);
         const int edge =
             k == 0 ? level.layout == Layout::latlong || level.layout == Layout::exrLatlong
                          ? std::max(1, level.image.height / 2)
@@ -134,7 +169,7 @@ RenderMaps prepareMaps(Session& session, const ProbeOptions& options, const MapA
         for (PrefilterResult& result : results)
             maps.specular.levels.push_back(std::move(result.map));
     }
-    if (!arguments.diffuse.empty()) maps.diffuse = readMap(session, arguments.diffuse);
+    if (!arguments.diffuse.empty()) maps.diffuse = readDiffuse(session, arguments.diffuse);
     if (!arguments.specular.empty()) maps.specular = readSpecular(session, arguments.specular);
     if (needs.split_sum) {
         SplitSumOptions table{kTableSize, true, false, session.threads()};

@@ -131,14 +131,14 @@ Image Session::readPicture(const std::string& path, const char* stage_name) {
     return std::move(file.image);
 }
 
-Panorama Session::readProbe(const ProbeOptions& options) {
+ProbeFile Session::readScreened(const ProbeOptions& options) {
     ProbeFile file = readUnscreened(options);
     if (options.repair) {
         mend(options.input, file.panorama);
     } else if (!isValidByFormat(file)) {
         stage("screen", [&] { screen(options.input, file.panorama); });
     }
-    return std::move(file.panorama);
+    return file;
 }
 
 void Session::screen(const std::string& subject, const Panorama& panorama) {

@@ -52,7 +52,9 @@ public:
     void addInput(const std::string& path);
 
     /// Reads the probe, tells what is in it and refuses or mends what is not finite.
-    Panorama readProbe(const ProbeOptions& options);
+    ProbeFile readScreened(const ProbeOptions& options);
+    /// Its pixels alone.
+    Panorama readProbe(const ProbeOptions& options) { return readScreened(options).panorama; }
 
     /// Reads an image that is no probe, such as a texture, in a stage of that name. NaN and
     /// infinite values are refused.

@@ -6,11 +6,14 @@
 #include "image/exr_layers.h"
 
 #include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFloatAttribute.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfInputPart.h>
+#include <OpenEXR/ImfIntAttribute.h>
 #include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfRgbaFile.h>
 #include <OpenEXR/ImfStandardAttributes.h>
+#include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfThreading.h>
 
 #include <algorithm>
@@ -243,12 +246,29 @@ void spreadGrey(Image& image, int threads) {
     });
 }
 
+template <class T>
+std::optional<T> attribute(const Imf::Header& header, const char* name) {
+    const auto* found = header.findTypedAttribute<Imf::TypedAttribute<T>>(name);
+    return found ? std::optional<T>(found->value()) : std::nullopt;
+}
+
+MapLabel labelOf(const Imf::Header& header) {
+    MapLabel label;
+    label.kernel = attribute<std::string>(header, "ibl.kernel").value_or("");
+    label.roughness = attribute<float>(header, "ibl.roughness");
+    label.exponent = attribute<float>(header, "ibl.exponent");
+    label.level = attribute<int>(header, "ibl.level").value_or(0);
+    label.levels = attribute<int>(header, "ibl.levels").value_or(0);
+    return label;
+}
+
 void describe(const std::vector<Imf::Header>& parts, const ExrChoice& choice,
               const ReadOptions& options, const Target& target, ImageFile& file) {
     const Imf::Header& header = parts[static_cast<std::size_t>(choice.part)];
     file.format = "exr";
     file.compression = compressionName(header.compression());
     file.layers = exrLayers(parts);
+    file.label = labelOf(header);
     if (Imf::hasEnvmap(header)) {
         file.envmap = Imf::envmap(header) == Imf::ENVMAP_CUBE ? "cube" : "latlong";
     }

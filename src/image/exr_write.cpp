@@ -4,11 +4,14 @@
 #include "core/parallel.h"
 
 #include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFloatAttribute.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIO.h>
+#include <OpenEXR/ImfIntAttribute.h>
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfStandardAttributes.h>
+#include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfThreading.h>
 
 #include <array>
@@ -55,6 +58,16 @@ Imf::Compression compressionNamed(const std::string& name, const std::string& pa
                                 "dwab");
 }
 
+void addLabel(Imf::Header& header, const MapLabel& label) {
+    if (!label.kernel.empty()) header.insert("ibl.kernel", Imf::StringAttribute(label.kernel));
+    if (label.roughness) header.insert("ibl.roughness", Imf::FloatAttribute(*label.roughness));
+    if (label.exponent) header.insert("ibl.exponent", Imf::FloatAttribute(*label.exponent));
+    if (label.levels > 0) {
+        header.insert("ibl.level", Imf::IntAttribute(label.level));
+        header.insert("ibl.levels", Imf::IntAttribute(label.levels));
+    }
+}
+
 Imf::Header makeHeader(const Image& image, const WriteOptions& options, const std::string& path) {
     Imf::Header header(image.width, image.height);
     const bool plain = options.smooth && options.type == PixelType::float32;
@@ -67,6 +80,7 @@ Imf::Header makeHeader(const Image& image, const WriteOptions& options, const st
         header.channels().insert(kChannels[c], Imf::Channel(type));
     for (const ExtraChannel& extra : options.extra)
         header.channels().insert(extra.name, Imf::Channel(Imf::FLOAT));
+    addLabel(header, options.label);
     if (options.envmap == "latlong") {
         Imf::addEnvmap(header, Imf::ENVMAP_LATLONG);
     } else if (options.envmap == "cube") {

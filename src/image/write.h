@@ -2,6 +2,7 @@
 #pragma once
 
 #include "image/image.h"
+#include "image/map_label.h"
 #include "image/output_set.h"
 
 #include <cstddef>
@@ -27,6 +28,7 @@ struct WriteOptions {
     std::string compression;
     bool smooth = false; ///< convolved: floats of which zip saves 3 % for a third of the time
     std::string envmap;  ///< OpenEXR's envmap attribute: "", "latlong" or "cube"
+    MapLabel label;      ///< OpenEXR: of a convolved map
     std::string format;  ///< "exr", "hdr", "png", ... instead of what the name's extension says
     int threads = 0;     ///< for encoding; 0: as many as the machine has
     /// OpenEXR: written beside the picture's own, as floats whatever `type` is.

@@ -57,6 +57,11 @@ ProbeFile readFaces(const std::string& path, const ReadProbeOptions& options) {
                                        probe.files.front() + " is " + std::to_string(edge) +
                                        "; all six must be of one size");
         }
+        if (!probe.files.empty() && file.label != probe.metadata.label) {
+            throw inputError(name, "is of another map (" + describe(file.label) + ") than " +
+                                       probe.files.front() + " (" + describe(probe.metadata.label) +
+                                       "); write the six again");
+        }
         float* face = probe.panorama.image.row(static_cast<int>(probe.files.size()) * edge);
         std::copy(file.image.pixels.begin(), file.image.pixels.end(), face);
         for (const std::string& note : file.notes)

@@ -27,7 +27,8 @@ struct ProbeFile {
 /// Reads a probe: a file, `-` (standard input), `builtin:NAME`, or six faces: DIR/p.exr stands for
 /// DIR/p_px.exr, p_nx, p_py, p_ny, p_pz, p_nz when there is no file DIR/p.exr.
 /// Throws Error (input) when it cannot be read, its layout cannot be told or is contradicted by its
-/// shape, or the six faces are not square and of one size. Bad pixels are kept (see census.h).
+/// shape, or the six faces are not square, of one size and of one map (MapLabel). Bad pixels are
+/// kept (see census.h).
 ProbeFile readProbe(const std::string& path, const ReadProbeOptions& options = {});
 
 /// The names of the files that hold a probe of that layout: for `faces` six, the suffix standing

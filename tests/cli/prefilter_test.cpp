@@ -137,8 +137,10 @@ TEST(Specular, RoughnessZeroIsConvert) {
                   .exit_code,
               0);
     for (const char* face : {"px", "nx", "py", "ny", "pz", "nz"}) {
-        EXPECT_TRUE(readFile(scratch / ("s_" + std::string(face) + ".exr")) ==
-                    readFile(scratch / ("c_" + std::string(face) + ".exr")));
+        const auto pixels = [&](const char* stem) {
+            return readImage((scratch / (stem + std::string(face) + ".exr")).string()).image.pixels;
+        };
+        EXPECT_TRUE(pixels("s_") == pixels("c_")) << face;
     }
 }
 
