@@ -1,6 +1,6 @@
 // From radiance to display light: exposure, the glow that lenses add, vignette, tone map. Colours
 // are premultiplied by alpha; tone maps apply to the straight colour. Defined as 0 or 1: STRAIGHT
-// (alpha may be below 1), GLOW, EVEN (the half-size pictures are exactly that); and TONE, a
+// (alpha may be below 1), GLOW, EVEN (the half-size pictures are exactly that), VIGNETTE; and TONE, a
 // function of tone_maps.glsl.
 layout(binding = 0) uniform sampler2D frame; // or the part of it from texture_origin
 uniform ivec2 texture_origin;
@@ -30,7 +30,9 @@ void main() {
     c += enlarged(glow, framePixel(), frame_size);
 #endif
 #endif
-    if (vignette > 0.0) c *= vignetteFactor();
+#if VIGNETTE
+    c *= vignetteFactor();
+#endif
 #if STRAIGHT
     float alpha = isnan(pixel.a) ? 0.0 : clamp(pixel.a, 0.0, 1.0);
     c = alpha > 0.0 ? clamp(c / alpha, -largest, largest) : vec3(0.0);

@@ -13,25 +13,36 @@ V2i halfOf(const V2i& size) {
     return {(size.x + 1) / 2, (size.y + 1) / 2};
 }
 
-const Program& reduction(Passes& passes, bool of_frame, const V2i& fine, const V2i& made) {
-    return passes.program({"exposure.glsl", "resize.glsl", "reduce.frag"},
-                          {of_frame ? "SOURCE_IS_FRAME 1" : "SOURCE_IS_FRAME 0",
-                           fine == 2 * made ? "EVEN 1" : "EVEN 0"});
+const V2i kAcross{1, 0}, kDown{0, 1};
+
+const Program& reduction(Passes& passes, bool of_frame, int n, int m) {
+    return passes.program(
+        {"exposure.glsl", "resize.glsl", "reduce.frag"},
+        {of_frame ? "SOURCE_IS_FRAME 1" : "SOURCE_IS_FRAME 0", n == 2 * m ? "EVEN 1" : "EVEN 0"});
 }
 
-void reduce(Passes& passes, const Program& program, const Texture& fine, const V2i& fine_size,
-            const V2i& fine_origin, const Target& to, const PixelRect& part) {
-    setUniform(program, "n", fine_size);
-    setUniform(program, "m", to.size);
+/// Reduces along an axis from n to m pixels, as far as `made` goes, which stands in the first
+/// pixels of the target; the texture's first pixel is `fine_origin`.
+void reduceAlong(Passes& passes, const Program& program, const V2i& axis, int n, int m,
+                 const Texture& fine, const V2i& fine_origin, const Framebuffer& to,
+                 const PixelRect& made, const V2i& made_at) {
+    setUniform(program, "axis", axis);
+    setUniform(program, "n", n);
+    setUniform(program, "m", m);
     setUniform(program, "fine_origin", fine_origin);
+    setUniform(program, "made_origin", made.min - made_at);
     glBindTextureUnit(0, fine.id());
-    passes.draw(program, to.framebuffer, part);
+    passes.draw(program, to, {made_at, made_at + made.max - made.min});
 }
 
 Target halved(Passes& passes, const Target& fine) {
     Target made = makeTarget(halfOf(fine.size), GL_RGBA32F);
-    const Program& program = reduction(passes, false, fine.size, made.size);
-    reduce(passes, program, fine.texture, fine.size, {0, 0}, made, {{0, 0}, made.size});
+    const V2i n = fine.size, m = made.size, between{m.x, n.y};
+    const Target& scratch = passes.scratch(between);
+    reduceAlong(passes, reduction(passes, false, n.x, m.x), kAcross, n.x, m.x, fine.texture, {0, 0},
+                scratch.framebuffer, {{0, 0}, between}, {0, 0});
+    reduceAlong(passes, reduction(passes, false, n.y, m.y), kDown, n.y, m.y, scratch.texture,
+                {0, 0}, made.framebuffer, {{0, 0}, m}, {0, 0});
     return made;
 }
 
@@ -86,51 +97,57 @@ Target reduceFrame(Passes& passes, FrameTiles& tiles, double exposure,
     const V2i frame = tiles.frameSize();
     const int limit = getInteger(GL_MAX_TEXTURE_SIZE);
     const V2i size{std::min((frame.x + 1) / 2, limit), std::min((frame.y + 1) / 2, limit)};
-    const Program& program = reduction(passes, true, frame, size);
-    setUniform(program, "exposure", exposure);
-    setUniform(program, "threshold", threshold.value_or(0));
+    const Program& across = reduction(passes, true, frame.x, size.x);
+    const Program& down = reduction(passes, false, frame.y, size.y);
+    setUniform(across, "exposure", exposure);
+    setUniform(across, "threshold", threshold.value_or(0));
     Target made = makeTarget(size, GL_RGBA32F);
     // Parts so large that what they read fits into a tile.
-    const auto partOf = [&](int n, int m) {
-        return std::max(1, static_cast<int>((tiles.edge() - 4.0) * m / n) - 2);
+    const auto partOf = [](int most, int n, int m) {
+        return most >= n ? m : std::max(1, static_cast<int>((most - 4.0) * m / n) - 2);
     };
-    const bool whole = frame.x <= tiles.edge() && frame.y <= tiles.edge();
-    const V2i step = whole ? size : V2i(partOf(frame.x, size.x), partOf(frame.y, size.y));
+    const V2i most = tiles.most();
+    const V2i step(partOf(most.x, frame.x, size.x), partOf(most.y, frame.y, size.y));
+    const Target& scratch = passes.scratch({step.x, most.y});
     for (int y = 0; y < size.y; y += step.y) {
         for (int x = 0; x < size.x; x += step.x) {
             const V2i begin{x, y}, end{std::min(size.x, x + step.x), std::min(size.y, y + step.y)};
             const auto [left, right] = readRange(begin.x, end.x, frame.x, size.x);
             const auto [top, bottom] = readRange(begin.y, end.y, frame.y, size.y);
             tiles.hold({{left, top}, {right, bottom}});
-            reduce(passes, program, tiles.texture(), frame, tiles.origin(), made, {begin, end});
+            reduceAlong(passes, across, kAcross, frame.x, size.x, tiles.texture(), tiles.origin(),
+                        scratch.framebuffer, {{begin.x, top}, {end.x, bottom}}, {0, 0});
+            reduceAlong(passes, down, kDown, frame.y, size.y, scratch.texture, {begin.x, top},
+                        made.framebuffer, {begin, end}, begin);
         }
     }
     return made;
 }
 
-void addLevels(Passes& passes, const Target& base, std::span<const double> weights,
-               const Target& sum) {
+void addLevels(Passes& passes, Target base, std::span<const double> weights, Target& sum) {
     std::vector<Target> levels;
-    for (std::size_t l = 1; l < weights.size(); ++l) {
-        levels.push_back(halved(passes, l == 1 ? base : levels.back()));
-    }
-    Target carried;
-    for (std::size_t l = weights.size(); l-- > 0;) {
-        const Target& own = l == 0 ? base : levels[l - 1];
-        const Program& program = passes.program(
-            {"resize.glsl", "enlarge.frag"}, {carried.texture ? "COARSEST 0" : "COARSEST 1",
-                                              own.size == 2 * carried.size ? "EVEN 1" : "EVEN 0"});
-        setUniform(program, "own_weight", weights[l]);
+    levels.push_back(std::move(base));
+    while (levels.size() < weights.size())
+        levels.push_back(halved(passes, levels.back()));
+    const Program& smooth = passes.program({"resize.glsl", "smooth.glsl", "smooth.frag"});
+    // A level, once smoothed across, makes room for what goes on upwards.
+    for (std::size_t l = levels.size(); l-- > 0;) {
+        const Target& own = levels[l];
+        const Target* coarse = l + 1 < levels.size() ? &levels[l + 1] : nullptr;
+        const Target& scratch = passes.scratch(own.size);
         glBindTextureUnit(0, own.texture.id());
-        if (carried.texture) glBindTextureUnit(1, carried.texture.id());
-        if (l == 0) {
-            passes.add(program, sum);
-        } else {
-            Target made = makeTarget(own.size, GL_RGBA32F);
-            passes.draw(program, made);
-            carried = std::move(made);
-        }
+        passes.draw(smooth, scratch.framebuffer, {{0, 0}, own.size});
+        const bool even = coarse && own.size == 2 * coarse->size;
+        const Program& enlarge =
+            passes.program({"resize.glsl", "smooth.glsl", "enlarge.frag"},
+                           {coarse ? "COARSEST 0" : "COARSEST 1", even ? "EVEN 1" : "EVEN 0"});
+        setUniform(enlarge, "size", own.size);
+        setUniform(enlarge, "own_weight", weights[l]);
+        glBindTextureUnit(0, scratch.texture.id());
+        if (coarse) glBindTextureUnit(1, coarse->texture.id());
+        l == 0 && sum.texture ? passes.add(enlarge, sum) : passes.draw(enlarge, own);
     }
+    if (!sum.texture) sum = std::move(levels[0]);
 }
 
 Target blurred(Passes& passes, const Target& base, const V2i& frame, double deviation) {

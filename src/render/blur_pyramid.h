@@ -27,9 +27,8 @@ Target reduceFrame(Passes& passes, FrameTiles& tiles, double exposure,
                    std::optional<double> threshold);
 
 /// Adds sum over l of weights[l - 1] (level l smoothed and enlarged to level 1) to `sum`, of the
-/// size of `base`, which is level 1.
-void addLevels(Passes& passes, const Target& base, std::span<const double> weights,
-               const Target& sum);
+/// size of `base`, which is level 1; where there is no sum yet, it is that.
+void addLevels(Passes& passes, Target base, std::span<const double> weights, Target& sum);
 
 /// Level 1 blurred, in some smaller size that holds it, such that it is the picture, of `frame`
 /// pixels, blurred by a Gaussian of that deviation once it is enlarged to level 1 and to the

@@ -68,7 +68,7 @@ void defocus(const EglContext&, Image& picture, const Image& inverse_distance, c
                                          " pixels; take a smaller aperture");
     }
     const std::vector<float> sums = coverSums(most);
-    FrameTiles tiles(picture, edge, threads);
+    FrameTiles tiles(picture, {width, height}, threads);
     tiles.hold({{0, 0}, {width, height}});
     const Texture circle_texture = upload(GL_RG32F, GL_RG, width, height, circles.data());
     const Texture sum_texture =

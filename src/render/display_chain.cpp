@@ -84,7 +84,6 @@ void expose(Image& picture, double exposure, int threads) {
                     });
 }
 
-constexpr int kBandPixels = 1 << 19;
 // Texture units of the last pass; look-up tables of a display transform follow.
 constexpr GLuint kGlowUnit = 1, kSurroundUnit = 2, kLutUnit = 3;
 
@@ -98,7 +97,7 @@ struct DisplayChain::State {
 
     bool glows() const { return options.bloom + options.streaks + options.glare > 0; }
     Target glow(FrameTiles& tiles, double exposure);
-    void addStreaks(const Target& bright, int frame_height, const Target& sum);
+    Target streaksOf(const Target& bright, int frame_height);
     Target retinexSurrounds(FrameTiles& tiles, double exposure);
     Texture localLevels(FrameTiles& tiles, double exposure);
     void run(Image& picture, double exposure, ToneMap tone_map, bool with_lens, int threads);
@@ -110,39 +109,34 @@ Target DisplayChain::State::glow(FrameTiles& tiles, double exposure) {
     const DisplayOptions& o = options;
     const int height = tiles.frameSize().y;
     Target sum;
-    const auto begin = [&](const Target& base) {
-        if (sum.texture) return;
-        sum = makeTarget(base.size, GL_RGBA32F);
-        const float black[4] = {0, 0, 0, 0};
-        glClearNamedFramebufferfv(sum.framebuffer.id(), GL_COLOR, 0, black);
-    };
     if (o.bloom > 0 || o.streaks > 0) {
-        const Target bright = reduceFrame(passes, tiles, exposure, o.threshold);
-        begin(bright);
+        Target bright = reduceFrame(passes, tiles, exposure, o.threshold);
+        if (o.streaks > 0) sum = streaksOf(bright, height);
         if (o.bloom > 0) {
             const double level = levelOfDeviation(o.bloom_radius * height);
-            addLevels(passes, bright, octaveWeights(level, levelsOf(bright), o.bloom), sum);
+            const auto weights = octaveWeights(level, levelsOf(bright), o.bloom);
+            addLevels(passes, std::move(bright), weights, sum);
         }
-        if (o.streaks > 0) addStreaks(bright, height, sum);
     }
     if (o.glare > 0) {
-        const Target all = reduceFrame(passes, tiles, exposure, std::nullopt);
-        begin(all);
+        Target all = reduceFrame(passes, tiles, exposure, std::nullopt);
         const std::size_t levels = levelsOf(all);
-        addLevels(passes, all, octaveWeights(static_cast<double>(levels), levels, o.glare), sum);
+        const auto weights = octaveWeights(static_cast<double>(levels), levels, o.glare);
+        addLevels(passes, std::move(all), weights, sum);
     }
     return sum;
 }
 
 // A ray's light fades by the same factor every pixel, to `streak_attenuation` at its length, and is
 // summed in steps of four, each over the last one's result.
-void DisplayChain::State::addStreaks(const Target& bright, int frame_height, const Target& sum) {
+Target DisplayChain::State::streaksOf(const Target& bright, int frame_height) {
     const Program& program = passes.program({"streak.frag"});
     const double ratio = static_cast<double>(bright.size.y) / frame_height;
     const double length = std::max(1.0, options.streak_length * frame_height * ratio);
     setUniform(program, "fading", std::pow(options.streak_attenuation, 1 / length));
     const int steps = std::max(1, static_cast<int>(std::ceil(std::log2(length) / 2)));
     Target targets[2] = {makeTarget(bright.size, GL_RGBA32F), makeTarget(bright.size, GL_RGBA32F)};
+    Target sum = makeTarget(bright.size, GL_RGBA32F);
     for (int ray = 0; ray < options.streak_count; ++ray) {
         const double turn =
             options.streak_angle / 360 + static_cast<double>(ray) / options.streak_count;
@@ -154,11 +148,12 @@ void DisplayChain::State::addStreaks(const Target& bright, int frame_height, con
             setUniform(program, "stride", std::exp2(2 * step));
             setUniform(program, "weight", last ? options.streaks / options.streak_count : 1.0);
             glBindTextureUnit(0, from->id());
-            const Target& to = targets[step % 2];
-            last ? passes.add(program, sum) : passes.draw(program, to);
+            const Target& to = last ? sum : targets[step % 2];
+            last&& ray > 0 ? passes.add(program, to) : passes.draw(program, to);
             from = &to.texture;
         }
     }
+    return sum;
 }
 
 // The sum over the surrounds of w_n ln(blur_n + eps), at half the size.
@@ -167,8 +162,6 @@ Target DisplayChain::State::retinexSurrounds(FrameTiles& tiles, double exposure)
     const int scales = static_cast<int>(scale_count);
     const Target base = reduceFrame(passes, tiles, exposure, std::nullopt);
     Target sum = makeTarget(base.size, GL_RGBA32F);
-    const float black[4] = {0, 0, 0, 0};
-    glClearNamedFramebufferfv(sum.framebuffer.id(), GL_COLOR, 0, black);
     double weights = 0;
     for (int n = 0; n < scales; ++n)
         weights += std::pow(scales - n, f);
@@ -182,7 +175,7 @@ Target DisplayChain::State::retinexSurrounds(FrameTiles& tiles, double exposure)
         const Target surround = blurred(passes, base, tiles.frameSize(), deviation);
         setUniform(program, "weight", std::pow(scales - n, f) / weights);
         glBindTextureUnit(0, surround.texture.id());
-        passes.add(program, sum);
+        n > 0 ? passes.add(program, sum) : passes.draw(program, sum);
     }
     return sum;
 }
@@ -215,12 +208,14 @@ Texture DisplayChain::State::localLevels(FrameTiles& tiles, double exposure) {
     setUniform(first, "fine_size", frame);
     setUniform(first, "margin", kMargin);
     const Framebuffer to = makeFramebuffer(levels);
-    const int step = std::max(1, (tiles.edge() - 4) / 2);
-    const bool whole = std::max(frame.x, frame.y) <= tiles.edge();
-    for (int y = 0; y < size.y; y += whole ? size.y : step) {
-        for (int x = 0; x < size.x; x += whole ? size.x : step) {
-            const V2i end =
-                whole ? size : V2i(std::min(size.x, x + step), std::min(size.y, y + step));
+    const auto partOf = [](int most, int n, int made) {
+        return most >= n ? made : std::max(1, (most - 4) / 2);
+    };
+    const V2i step(partOf(tiles.most().x, frame.x, size.x),
+                   partOf(tiles.most().y, frame.y, size.y));
+    for (int y = 0; y < size.y; y += step.y) {
+        for (int x = 0; x < size.x; x += step.x) {
+            const V2i end(std::min(size.x, x + step.x), std::min(size.y, y + step.y));
             const auto range = [](int begin, int past, int n) {
                 return std::pair(std::clamp(2 * (begin - kMargin) - 2, 0, n - 1),
                                  std::clamp(2 * (past - kMargin) + 1, 1, n));
@@ -256,7 +251,8 @@ const Program& DisplayChain::State::lastProgram(ToneMap tone_map, bool straight,
         return std::string(name) + (on ? " 1" : " 0");
     };
     std::vector<std::string> definitions{flag("STRAIGHT", straight),
-                                         flag("GLOW", with_lens && glows()), flag("EVEN", even)};
+                                         flag("GLOW", with_lens && glows()), flag("EVEN", even),
+                                         flag("VIGNETTE", with_lens && options.vignette > 0)};
     std::string function(info.function);
     if (!info.curve.empty()) {
         definitions.push_back("CURVE " + std::string(info.curve));
@@ -275,7 +271,7 @@ const Program& DisplayChain::State::lastProgram(ToneMap tone_map, bool straight,
     setUniform(program, "threshold", options.threshold);
     setUniform(program, "bright_weight", options.bloom + options.streaks);
     setUniform(program, "glare_weight", options.glare);
-    setUniform(program, "vignette", with_lens ? options.vignette : 0.0);
+    setUniform(program, "vignette", options.vignette);
     setUniform(program, "key", options.key);
     return program;
 }
@@ -284,8 +280,8 @@ const Program& DisplayChain::State::lastProgram(ToneMap tone_map, bool straight,
 // picture is the pixel that it makes, so the result may take its place band by band.
 void DisplayChain::State::run(Image& picture, double exposure, ToneMap tone_map, bool with_lens,
                               int threads) {
-    FrameTiles tiles(picture, tile_edge, threads);
-    const V2i frame = tiles.frameSize();
+    const V2i frame{picture.width, picture.height}, step = tileSize(frame, tile_edge);
+    FrameTiles tiles(picture, step, threads);
     const bool straight = picture.channels == 4;
     Target overlay, surrounds;
     Texture levels;
@@ -301,10 +297,6 @@ void DisplayChain::State::run(Image& picture, double exposure, ToneMap tone_map,
     glBindTextureUnit(kSurroundUnit, levels ? levels.id() : surrounds.texture.id());
     bindLuts(luts, last, kLutUnit);
 
-    // The last pass goes in bands, so that its target is little memory.
-    const V2i step{
-        std::min(frame.x, tiles.edge()),
-        std::min({frame.y, tiles.edge(), kBandPixels / std::min(frame.x, tiles.edge())})};
     const Target target = makeTarget(step, GL_RGBA32F);
     glPixelStorei(GL_PACK_ROW_LENGTH, frame.x);
     glPixelStorei(GL_PACK_ALIGNMENT, 1);

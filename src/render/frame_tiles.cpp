@@ -23,23 +23,25 @@ Target makeTarget(const V2i& size, GLenum format) {
     for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
         glTextureParameteri(target.texture.id(), filter, GL_LINEAR);
     for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
-        glTextureParameteri(target.texture.id(), wrap, GL_MIRRORED_REPEAT);
+        glTextureParameteri(target.texture.id(), wrap, GL_CLAMP_TO_EDGE);
     target.framebuffer = makeFramebuffer(target.texture);
     return target;
 }
 
-FrameTiles::FrameTiles(const Image& frame, int edge, int threads)
-    : frame_(frame), edge_(edge), threads_(threads) {}
+V2i tileSize(const V2i& frame, int edge) {
+    constexpr int kPixels = 1 << 18; // 4 MB
+    const int width = std::min(frame.x, edge);
+    return {width, std::min({frame.y, edge, kPixels / width})};
+}
+
+FrameTiles::FrameTiles(const Image& frame, const V2i& most, int threads)
+    : frame_(frame), most_(most), threads_(threads) {}
 
 void FrameTiles::hold(const PixelRect& part) {
-    const bool fits = frame_.width <= edge_ && frame_.height <= edge_;
-    const PixelRect wanted = fits ? PixelRect{{0, 0}, frameSize()} : part;
-    if (texture_ && wanted.min == held_.min && wanted.max == held_.max) return;
-    const V2i size = wanted.max - wanted.min;
-    if (!texture_ || held_.max - held_.min != size) {
-        texture_ = makeTexture(GL_TEXTURE_2D, GL_RGBA32F, size.x, size.y);
-    }
-    held_ = wanted;
+    if (texture_ && part.min == held_.min && part.max == held_.max) return;
+    const V2i size = part.max - part.min;
+    if (!texture_) texture_ = makeTexture(GL_TEXTURE_2D, GL_RGBA32F, most_.x, most_.y);
+    held_ = part;
     // In bands, so that little memory is touched. The fourth channel is added here: drivers are
     // slow at it, and shaders at texels of three.
     constexpr int kRows = 64;

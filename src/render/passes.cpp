@@ -1,5 +1,7 @@
 #include "render/passes.h"
 
+#include <algorithm>
+
 namespace ibl {
 
 Passes::Passes(std::optional<std::filesystem::path> shader_folder)
@@ -20,6 +22,14 @@ const Program& Passes::program(const std::vector<std::string_view>& files,
     Program& program = programs_[key];
     if (!program) program = makeProgram({{"fullscreen.vert"}, files, definitions, source}, folder_);
     return program;
+}
+
+const Target& Passes::scratch(const V2i& size) {
+    if (scratch_.size.x < size.x || scratch_.size.y < size.y) {
+        scratch_ = makeTarget(
+            {std::max(scratch_.size.x, size.x), std::max(scratch_.size.y, size.y)}, GL_RGBA32F);
+    }
+    return scratch_;
 }
 
 void Passes::draw(const Program& program, const Framebuffer& to, const PixelRect& part) const {

@@ -24,6 +24,9 @@ public:
                            const std::vector<std::string>& definitions = {},
                            const std::string& source = {});
 
+    /// A target of at least that size, for what one pass hands to the next.
+    const Target& scratch(const V2i& size);
+
     /// Runs the program on every pixel of `part`.
     void draw(const Program& program, const Framebuffer& to, const PixelRect& part) const;
     /// The same on all of the target.
@@ -37,6 +40,7 @@ private:
     std::optional<std::filesystem::path> folder_;
     VertexArray no_vertices_;
     std::map<std::string, Program> programs_;
+    Target scratch_;
 };
 
 } // namespace ibl

@@ -96,6 +96,30 @@ TEST_F(Png, SrgbIsExactToACode) {
     }
 }
 
+// The two floats about each place where one code becomes the next, of all 65536.
+TEST_F(Png, EveryDeepCodeBeginsWhereItShould) {
+    Image image(65535, 1, 3);
+    for (int code = 1; code < 65536; ++code) {
+        const long double v = (code - 0.5L) / 65535;
+        const long double boundary =
+            v <= 0.04045L ? v / 12.92L : std::pow((v + 0.055L) / 1.055L, 2.4L);
+        float from = static_cast<float>(boundary);
+        if (from < boundary) from = std::nextafter(from, 2.0F);
+        float* p = image.at(code - 1, 0);
+        p[0] = std::nextafter(from, -1.0F);
+        p[1] = from;
+        p[2] = 0;
+    }
+    OutputSet outputs;
+    writePng(outputs.add(path("a.png")), image, {16, false, false});
+    outputs.commit();
+    const std::vector<int> codes = codesOf(path("a.png"), 16);
+    for (int code = 1; code < 65536; ++code) {
+        ASSERT_EQ(codes[static_cast<std::size_t>(3 * code - 3)], code - 1);
+        ASSERT_EQ(codes[static_cast<std::size_t>(3 * code - 2)], code);
+    }
+}
+
 TEST_F(Png, DitheringKeepsTheMeanBetweenCodes) {
     for (const double code : {0.25, 17.5, 200.125}) {
         Image image(16, 16);

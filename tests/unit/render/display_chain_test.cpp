@@ -256,7 +256,7 @@ TEST(Effects, WhatCannotBeIsRefused) {
 
 // Pictures that go by tiles are the same as those that fit.
 TEST(Tiles, DoNotShow) {
-    const Image picture = lampScene(150, 101);
+    const Image wide = lampScene(150, 101), high = lampScene(100, 151);
     for (const ToneMapInfo& info : toneMapTable()) {
         if (info.map == ToneMap::display) continue;
         DisplayOptions options;
@@ -267,9 +267,10 @@ TEST(Tiles, DoNotShow) {
         options.streaks = 0.2;
         options.glare = 0.1;
         options.vignette = 0.5;
-        const Image whole = shown(options, picture, 1);
-        for (const int edge : {16, 37, 64}) {
-            const Image tiled = shown(options, picture, 1, edge);
+        for (const auto& [picture, edge] :
+             {std::pair(&wide, 16), {&wide, 37}, {&wide, 64}, {&wide, 120}, {&high, 120}}) {
+            const Image whole = shown(options, *picture, 1);
+            const Image tiled = shown(options, *picture, 1, edge);
             for (std::size_t i = 0; i < whole.pixels.size(); ++i) {
                 ASSERT_NEAR(tiled.pixels[i], whole.pixels[i], 1e-6F * (1 + whole.pixels[i]))
                     << info.name << " " << edge;
