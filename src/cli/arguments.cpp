@@ -4,6 +4,7 @@
 #include "image/write.h"
 
 #include <filesystem>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -20,11 +21,32 @@ CLI::Option* addLayout(CLI::App& app, const std::string& name, Layout& layout,
         ->type_name("LAYOUT");
 }
 
+template <class T>
+CLI::Validator rangeCheck(T least, T most, const char* what) {
+    std::ostringstream ends, range;
+    ends << least << " to " << most;
+    range << CLI::detail::type_name<T>() << " in [" << least << " - " << most << "]";
+    const auto check = [least, most, what, words = ends.str()](std::string& text) {
+        T value{};
+        const bool good = CLI::detail::lexical_cast(text, value) && value >= least && value <= most;
+        return good ? "" : "'" + text + "' is not " + what + " from " + words;
+    };
+    return CLI::Validator(check, range.str());
+}
+
 } // namespace
+
+CLI::Validator inRange(int least, int most) {
+    return rangeCheck(least, most, "a whole number");
+}
+
+CLI::Validator inRange(double least, double most) {
+    return rangeCheck(least, most, "a number");
+}
 
 void bindCommon(CLI::App& app, CommonOptions& options) {
     app.add_option("--threads", options.threads, "Threads to use (0: as many as the machine has)")
-        ->check(CLI::Range(0, 1024))
+        ->check(inRange(0, 1024))
         ->type_name("N")
         ->capture_default_str()
         ->group("Run");
@@ -102,7 +124,7 @@ void bindTarget(CLI::App& app, Layout& to, std::optional<int>& size,
     app.add_option("--size", size,
                    "Face edge, height of a lat-long or edge of a square map, in pixels (default: " +
                        default_size + ")")
-        ->check(CLI::Range(1, kMaxSize))
+        ->check(inRange(1, kMaxSize))
         ->type_name("N")
         ->group("Output");
 }

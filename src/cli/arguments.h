@@ -54,6 +54,10 @@ void bindTarget(CLI::App& app, Layout& to, std::optional<int>& size,
 /// Largest face edge or lat-long height that is accepted.
 constexpr int kMaxSize = 16384;
 
+/// A check that an option's value is a number of that range, both ends included (NaN is in none).
+CLI::Validator inRange(int least, int most);
+CLI::Validator inRange(double least, double most);
+
 /// `x,y,z` as three numbers.
 CLI::Option* addTriple(CLI::App& app, const std::string& names, Imath::V3d& value,
                        const std::string& help, const std::string& type_name = "X,Y,Z");

@@ -160,18 +160,18 @@ Command bindBake(CLI::App& root) {
         ->type_name("DIR")
         ->group("Output");
     app->add_option("--size", options->size, "Face edge of the chain's first level")
-        ->check(CLI::Range(1, kMaxSize))
+        ->check(inRange(1, kMaxSize))
         ->type_name("N")
         ->capture_default_str()
         ->group("Output");
     app->add_option("--levels", options->levels,
                     "Levels of the chain, roughness 0 to 1 (default: down to a face of 1 texel)")
-        ->check(CLI::Range(1, 16))
+        ->check(inRange(1, 16))
         ->type_name("K")
         ->group("Output");
     bindRoughnessMap(*app, options->roughness_map)->group("Output");
     app->add_option("--lights", options->lights, "How many median-cut lights, 1 to 65536")
-        ->check(CLI::Range(1, 65536))
+        ->check(inRange(1, 65536))
         ->type_name("N")
         ->capture_default_str()
         ->group("Output");

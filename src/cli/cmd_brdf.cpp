@@ -53,7 +53,7 @@ Command bindBrdf(CLI::App& root) {
                   "Blue: the cloth lobe's reflectance (Charlie, Neubelt's visibility), else 0")
         ->group("Table");
     app->add_option("--size", options->table.size, "Edge of the table in texels")
-        ->check(CLI::Range(1, 4096))
+        ->check(inRange(1, 4096))
         ->type_name("N")
         ->capture_default_str()
         ->group("Table");

@@ -116,7 +116,7 @@ void bindSh(CLI::App& app, ShOptions& options) {
         ->type_name("FILE")
         ->group("Coefficients");
     app.add_option("--sh-order", options.order, "Bands, 1 to 20 (N^2 coefficients)")
-        ->check(CLI::Range(1, kMaxShOrder))
+        ->check(inRange(1, kMaxShOrder))
         ->type_name("N")
         ->capture_default_str()
         ->group("Coefficients");

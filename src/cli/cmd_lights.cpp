@@ -175,12 +175,12 @@ void bindCuts(CLI::App& app, LightsOptions& options) {
     CLI::Option* count =
         app.add_option("-n,--count", options.count,
                        "How many lights, 1 to 65536 (default 64, or as many as --previous has)")
-            ->check(CLI::Range(1, kMostLights))
+            ->check(inRange(1, kMostLights))
             ->type_name("N");
     CLI::Option* error =
         app.add_option("--max-error", options.max_error,
                        "The fewest lights whose irradiance has at most this relative RMSE")
-            ->check(CLI::Range(1e-6, 1.0))
+            ->check(inRange(1e-6, 1.0))
             ->excludes(count)
             ->type_name("E");
     CLI::Option* method =

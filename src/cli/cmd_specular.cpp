@@ -145,12 +145,12 @@ Command bindSpecular(CLI::App& root) {
     CLI::Option* roughness = app->add_option("--roughness", options->roughness,
                                              "Perceptual roughness (alpha is its square): " +
                                                  rangesOf(KernelParameter::roughness))
-                                 ->check(CLI::Range(0.0, 1.0))
+                                 ->check(inRange(0.0, 1.0))
                                  ->type_name("R")
                                  ->group("Lobe");
     CLI::Option* exponent = app->add_option("--exponent", options->exponent,
                                             "Exponent: " + rangesOf(KernelParameter::exponent))
-                                ->check(CLI::Range(0.0, 1e6))
+                                ->check(inRange(0.0, 1e6))
                                 ->type_name("N")
                                 ->excludes(roughness)
                                 ->group("Lobe");
@@ -158,7 +158,7 @@ Command bindSpecular(CLI::App& root) {
         app->add_option("--levels", options->levels,
                         "A chain: roughness 0 (the probe, area-filtered) to 1 in K levels, each "
                         "half the size of the one before; exponents are 2 / roughness^4 - 2")
-            ->check(CLI::Range(1, 16))
+            ->check(inRange(1, 16))
             ->type_name("K")
             ->excludes(roughness)
             ->excludes(exponent)

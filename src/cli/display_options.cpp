@@ -51,18 +51,18 @@ void bindExposure(CLI::App& app, DisplayArguments& a) {
     app.add_option("--key", a.key,
                    "What the log-average becomes: 0.045 of dark to 0.72 of bright scenes (default "
                    "0.18)")
-        ->check(CLI::Range(0.045, 0.72))
+        ->check(inRange(0.045, 0.72))
         ->type_name("K")
         ->group("Exposure");
     app.add_option("--delta", a.delta,
                    "Added to luminance ahead of its logarithm, for auto (default 1e-5)")
-        ->check(CLI::Range(1e-30, 1e30))
+        ->check(inRange(1e-30, 1e30))
         ->type_name("D")
         ->group("Exposure");
     CLI::Option* adapt = app.add_option("--adapt", a.adapt,
                                         "Frames in which half of what the exposure lacks is made "
                                         "up for, with auto")
-                             ->check(CLI::Range(0.01, 1e6))
+                             ->check(inRange(0.01, 1e6))
                              ->type_name("FRAMES")
                              ->group("Exposure");
     app.add_option(
@@ -108,7 +108,7 @@ void bindToneMap(CLI::App& app, DisplayArguments& a) {
             app.add_option_function<double>(
                    "--" + name, [&a, name](double value) { a.tone_parameters[name] = value; },
                    help_text)
-                ->check(CLI::Range(p.least, p.most))
+                ->check(inRange(p.least, p.most))
                 ->check(p.whole ? CLI::Validator(CLI::TypeValidator<int>()) : CLI::Validator())
                 ->type_name(p.whole ? "N" : "X")
                 ->group("Tone map");
@@ -133,7 +133,7 @@ void bindEffects(CLI::App& app, DisplayArguments& a) {
     const auto number = [&](const char* name, double& value, double least, double most,
                             const char* type, const char* help) {
         return app.add_option(name, value, help)
-            ->check(CLI::Range(least, most))
+            ->check(inRange(least, most))
             ->type_name(type)
             ->capture_default_str()
             ->group("Effects");
@@ -146,7 +146,7 @@ void bindEffects(CLI::App& app, DisplayArguments& a) {
     CLI::Option* streaks =
         number("--streaks", o.streaks, 0, 1, "W", "Share of bright light that goes into rays");
     app.add_option("--streak-count", o.streak_count, "Number of rays")
-        ->check(CLI::Range(1, 64))
+        ->check(inRange(1, 64))
         ->type_name("N")
         ->capture_default_str()
         ->needs(streaks)

@@ -75,7 +75,7 @@ void bindQuality(CLI::App& app, QualityOptions& options) {
             ->group("Accuracy");
     app.add_option("--max-error", options.max_error,
                    "Relative RMSE to keep instead of a quality's, from 1e-6 to 1")
-        ->check(CLI::Range(1e-6, 1.0))
+        ->check(inRange(1e-6, 1.0))
         ->excludes(quality)
         ->type_name("E")
         ->group("Accuracy");

@@ -97,7 +97,7 @@ void bindCamera(CLI::App& app, CameraArguments& arguments, FrameRange& frames) {
     focal->excludes(fov)->excludes(of_file)->type_name("MM")->group("Camera");
     app.add_option("--sensor", arguments.sensor,
                    "Width of the sensor in millimetres (default 36, full frame)")
-        ->check(CLI::Range(1e-3, 1e6))
+        ->check(inRange(1e-3, 1e6))
         ->needs(focal)
         ->type_name("MM")
         ->group("Camera");

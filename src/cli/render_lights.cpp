@@ -127,7 +127,7 @@ void bindLightOptions(CLI::App& app, LightArguments& arguments) {
     app.add_option("--shadow-size", arguments.shadow_size,
                    "Texels a side of each light's shadow map, 16 to 8192 (default by the "
                    "picture's height, 256 to 2048)")
-        ->check(CLI::Range(16, 8192))
+        ->check(inRange(16, 8192))
         ->type_name("N")
         ->group("Lights");
     CLI::Option* ground =
@@ -137,7 +137,7 @@ void bindLightOptions(CLI::App& app, LightArguments& arguments) {
     app.add_option("--ground-height", arguments.ground_height,
                    "Its y (default the object's lowest point)")
         ->needs(ground)
-        ->check(CLI::Range(-1e6, 1e6))
+        ->check(inRange(-1e6, 1e6))
         ->type_name("Y")
         ->group("Lights");
     app.add_option_function<std::vector<double>>(
@@ -148,7 +148,7 @@ void bindLightOptions(CLI::App& app, LightArguments& arguments) {
            "Its albedo (default: whatever makes it look as the background does)")
         ->delimiter(',')
         ->expected(3)
-        ->check(CLI::Range(0.0, 1.0))
+        ->check(inRange(0.0, 1.0))
         ->needs(ground)
         ->type_name("R,G,B")
         ->group("Lights");

@@ -76,7 +76,7 @@ void bindMethod(CLI::App& app, MaterialArguments& arguments) {
     app.add_option("--samples-specular", arguments.samples,
                    "Integrate the lobe of ggx as the eye sees it by so many samples, each an area "
                    "of the probe, instead of by split sum")
-        ->check(CLI::Range(1, 65536))
+        ->check(inRange(1, 65536))
         ->type_name("N")
         ->group("Material");
     app.add_option_function<std::string>(

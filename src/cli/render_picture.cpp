@@ -116,7 +116,7 @@ void bindPicture(CLI::App& app, PictureArguments& arguments) {
         ->group("Picture");
     app.add_option("--samples", arguments.frame.samples,
                    "Shaded samples a pixel, averaged in linear light")
-        ->check(CLI::Range(1, 4096))
+        ->check(inRange(1, 4096))
         ->type_name("N")
         ->capture_default_str()
         ->group("Picture");

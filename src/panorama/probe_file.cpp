@@ -96,8 +96,9 @@ ProbeFile readOne(const std::string& path, const ReadProbeOptions& options) {
     if (!options.from && layout != Layout::latlong && probe.metadata.envmap.empty()) {
         // Many a photograph is 4:3.
         if (!crossCellsBlank(probe.panorama)) {
-            throw inputError(path, "has the shape of " + std::string(layoutName(layout)) +
-                                       ", but not the blank corners of one; name its layout");
+            throw inputError(path,
+                             "has the shape of " + std::string(layoutName(layout)) +
+                                 ", but not the blank corners of one; name its layout (--from)");
         }
         probe.notes.push_back("taken as " + std::string(layoutName(layout)) + " by its shape");
     }

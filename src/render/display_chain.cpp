@@ -149,7 +149,8 @@ Target DisplayChain::State::streaksOf(const Target& bright, int frame_height) {
             setUniform(program, "weight", last ? options.streaks / options.streak_count : 1.0);
             glBindTextureUnit(0, from->id());
             const Target& to = last ? sum : targets[step % 2];
-            last&& ray > 0 ? passes.add(program, to) : passes.draw(program, to);
+            const bool adds = last && ray > 0;
+            adds ? passes.add(program, to) : passes.draw(program, to);
             from = &to.texture;
         }
     }

@@ -251,6 +251,10 @@ TEST(Contract, UsageIsRefusedInTheUsersWords) {
     refused({"--eye", "0..1,0,4"}, "--eye: '0..1,0,4' is no number");
     refused({"--power", "3"}, "--power: there is no such option");
     refused({"stray"}, "stray: is one word too many");
+    refused({"--samples", "1e1"}, "--samples: '1e1' is not a whole number from 1 to 4096");
+    expectRefused(
+        runTool({"specular", "builtin:sky", "--roughness", "nan", "-o", "o.exr"}, scratch.path()),
+        1, "--roughness: 'nan' is not a number from 0 to 1");
     expectRefused(runTool({"bend", "builtin:sky"}, scratch.path()), 1,
                   "bend: there is no such command");
     EXPECT_TRUE(scratch.names().empty());
