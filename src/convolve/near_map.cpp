@@ -3,6 +3,7 @@
 #include "core/parallel.h"
 #include "panorama/layouts.h"
 #include "panorama/resample.h"
+#include "panorama/square_maps.h"
 
 #include <algorithm>
 #include <atomic>
@@ -52,8 +53,27 @@ Move moveOnFaces(const MapExtent& map, int x, int y, int probe_width) {
     return move;
 }
 
+/// On square maps: to the quarter of the first columns and rows. Their columns mirror x, the rows
+/// of ball maps y and those of the octahedral map z, which takes half a turn.
+Move moveOnSquare(const MapExtent& map, int x, int y, int probe_width) {
+    const bool mirror_x = 2 * x + 1 > map.width;
+    Move move{mirror_x ? map.width - 1 - x : x, y, mirror_x};
+    const bool mirror_row = 2 * y + 1 > map.height;
+    const bool octahedral = map.layout == Layout::octahedral;
+    if (!mirror_row || (octahedral && probe_width % 2 != 0)) return move;
+    move.y = map.height - 1 - y;
+    if (octahedral) {
+        move.reflect_psi = !mirror_x;
+        move.turn = probe_width / 2;
+    } else {
+        move.reflect_theta = true;
+    }
+    return move;
+}
+
 Move moveOf(const MapExtent& map, int x, int y, int probe_width) {
     if (map.layout == Layout::faces) return moveOnFaces(map, x, y, probe_width);
+    if (isSquareMap(map.layout)) return moveOnSquare(map, x, y, probe_width);
     Move move{x, y};
     if (map.layout == Layout::latlong) {
         const int turns = std::gcd(map.width, probe_width);
