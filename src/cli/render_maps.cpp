@@ -111,7 +111,7 @@ SpecularMaps readSpecular(Session& session, const std::string& path) {
         maps.levels.push_back(resample(level, Layout::faces, edge, session.threads()));
     }
     if (maps.levels.size() < 2) {
-        throw inputError(path, "has no levels " + levelName(path, 0) + " and " +
+        throw inputError(path, "wants two levels or more, " + levelName(path, 0) + ", " +
                                    levelName(path, 1) +
                                    "; make them with ibltool specular --levels");
     }

@@ -75,12 +75,13 @@ void addCutPoints(Layout layout, const MapRectangle& rectangle, const GaussRule&
     const double bottom = std::max(low.y, -widest), top = std::min(high.y, widest);
     for (std::size_t j = 0; j < rule.nodes.size(); ++j) {
         const double y = 0.5 * (bottom + top + (top - bottom) * rule.nodes[j]);
-        const double rim = halfChord(y), extent = std::min(high.x, rim) - low.x;
+        const double rim = halfChord(y), begin = std::max(low.x, -rim);
+        const double extent = std::min(high.x, rim) - begin;
         // The mirror ball's angle from -Z is smooth in the root of the distance from the rim.
         const bool root = layout == Layout::mirrorBall && high.x > rim;
         for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
             const double t = 0.5 * (1 + rule.nodes[i]);
-            const double x = low.x + extent * (root ? 1 - t * t : t);
+            const double x = begin + extent * (root ? 1 - t * t : t);
             points.push_back({swapped({side * x, y}), 0.25 * rule.weights[i] * rule.weights[j] *
                                                           (top - bottom) * std::max(0.0, extent) *
                                                           (root ? 2 * t : 1)});
