@@ -38,9 +38,10 @@ std::size_t lineCount(std::string_view text) {
 
 // Compilers report 0:LINE(COLUMN) (Mesa) or 0(LINE) (NVIDIA), the line in all that they were given,
 // which begins with `prelude` lines and goes on with the files. (#line with a source number would
-// say it directly, but Mesa drops the number.)
-Error compileError(const std::vector<SourceFile>& files, std::size_t prelude,
-                   std::string_view log) {
+// say it directly, but Mesa drops the number.) What a user's own file leaves open is found in a
+// file after it.
+Error compileError(const std::vector<SourceFile>& files, const std::string& own,
+                   std::size_t prelude, std::string_view log) {
     const std::string_view first = log.substr(0, log.find('\n'));
     std::size_t line = 0;
     char separator = 0;
@@ -49,19 +50,25 @@ Error compileError(const std::vector<SourceFile>& files, std::size_t prelude,
         line -= prelude;
         const std::size_t colon = first.find(": ");
         const std::string what(colon == first.npos ? first : first.substr(colon + 2));
+        std::size_t own_lines = 0;
         for (const SourceFile& file : files) {
             const std::size_t count = lineCount(file.text);
             if (line <= count) {
+                if (own_lines > 0) {
+                    return inputError(own + ":" + std::to_string(own_lines),
+                                      what + ", in what follows it; close what it leaves open");
+                }
                 return inputError(file.name + ":" + std::to_string(line),
                                   what + "; correct the shader");
             }
+            if (file.name == own) own_lines = count - 1; // one was added
             line -= count;
         }
     }
     return inputError(files.back().name, std::string(first) + "; correct the shader");
 }
 
-ShaderStage compile(GLenum stage, const std::vector<SourceFile>& files,
+ShaderStage compile(GLenum stage, const std::vector<SourceFile>& files, const std::string& own,
                     const std::vector<std::string>& definitions) {
     std::string text = "#version 450 core\n";
     for (const std::string& definition : definitions)
@@ -80,7 +87,7 @@ ShaderStage compile(GLenum stage, const std::vector<SourceFile>& files,
         GLsizei length = 0;
         glGetShaderInfoLog(shader.id(), static_cast<GLsizei>(log.size()), &length, log.data());
         log.resize(static_cast<std::size_t>(length));
-        throw compileError(files, prelude, log);
+        throw compileError(files, own, prelude, log);
     }
     return shader;
 }
@@ -98,8 +105,10 @@ Program makeProgram(const ProgramParts& parts, const std::optional<std::filesyst
     if (!parts.source.empty()) fragment_files.push_back({"generated source", parts.source});
     for (const std::string_view name : parts.fragment)
         fragment_files.push_back(read(name));
-    const ShaderStage vertex = compile(GL_VERTEX_SHADER, vertex_files, parts.definitions);
-    const ShaderStage fragment = compile(GL_FRAGMENT_SHADER, fragment_files, parts.definitions);
+    const std::string own = parts.own ? parts.own->name : "";
+    const ShaderStage vertex = compile(GL_VERTEX_SHADER, vertex_files, own, parts.definitions);
+    const ShaderStage fragment =
+        compile(GL_FRAGMENT_SHADER, fragment_files, own, parts.definitions);
 
     Program program(glCreateProgram());
     glAttachShader(program.id(), vertex.id());

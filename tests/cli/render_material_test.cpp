@@ -115,6 +115,8 @@ TEST(RenderMaterial, OwnShaders) {
     refused({"--shader", "none.frag"}, 2, "shade(vec3 normal");
     writeFile(scratch / "bad.frag", "\nvec3 shade(vec3 n, vec3 i) { return what; }\n");
     refused({"--shader", "bad.frag"}, 2, "bad.frag:2: ");
+    writeFile(scratch / "open.frag", "\nvec3 shade(vec3 n, vec3 i) {\n    return n;\n");
+    refused({"--shader", "open.frag"}, 2, "open.frag:3: ");
 }
 
 TEST(RenderMaterial, BaseTextureOfIntegersIsDecoded) {
