@@ -54,7 +54,8 @@ ReadMap readMap(Session& session, const std::string& path) {
     ProbeFile file = session.readScreened(options);
     ReadMap map{std::move(file.panorama), std::move(file.metadata.label)};
     if (isSquareMap(map.panorama.layout)) {
-        map.panorama = {Layout::latlong, latlongOf(std::move(map.panorama), session.threads())};
+        map.panorama = {Layout::latlong, latlongOf(std::move(map.panorama), session.threads(),
+                                                   Enlarging::interpolate)};
     }
     return map;
 }
@@ -153,7 +154,8 @@ RenderMaps prepareMaps(Session& session, const ProbeOptions& options, const MapA
         maps.probe = session.readProbe(options);
         // Textures hold lat-longs and cubes.
         if (isSquareMap(maps.probe.layout)) {
-            maps.probe = {Layout::latlong, latlongOf(std::move(maps.probe), session.threads())};
+            maps.probe = {Layout::latlong, latlongOf(std::move(maps.probe), session.threads(),
+                                                     Enlarging::interpolate)};
         }
     }
     std::vector<PrefilterRequest> requests;

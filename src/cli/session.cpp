@@ -237,12 +237,12 @@ void Session::finish() {
         std::fprintf(stderr, "ibltool: %s\n", line.c_str());
 }
 
-Image latlongOf(Panorama&& probe, int threads) {
+Image latlongOf(Panorama&& probe, int threads, Enlarging enlarging) {
     if (probe.layout == Layout::latlong) return std::move(probe.image);
     const int size = *layoutSize(probe.layout, probe.image.width, probe.image.height);
     const bool like_latlong = probe.layout == Layout::exrLatlong || isSquareMap(probe.layout);
     const int height = like_latlong ? size : 2 * size;
-    return resample(probe, Layout::latlong, height, threads).image;
+    return resample(probe, Layout::latlong, height, threads, enlarging).image;
 }
 
 } // namespace ibl

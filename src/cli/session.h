@@ -7,6 +7,7 @@
 #include "image/output_set.h"
 #include "panorama/panorama.h"
 #include "panorama/probe_file.h"
+#include "panorama/resample.h"
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -114,8 +115,9 @@ private:
     std::unique_ptr<nlohmann::ordered_json> results_;
 };
 
-/// The probe as a lat-long image, for what integrates over it: itself, or resampled to a height of
-/// twice the face edge.
-Image latlongOf(Panorama&& probe, int threads);
+/// The probe as a lat-long image: itself, or resampled to a height of twice the face edge. For what
+/// integrates over it pixels stay areas, which keeps the energy at any size; what is looked at may
+/// be interpolated.
+Image latlongOf(Panorama&& probe, int threads, Enlarging enlarging = Enlarging::hold);
 
 } // namespace ibl

@@ -144,6 +144,31 @@ TEST(Specular, RoughnessZeroIsConvert) {
     }
 }
 
+/// A pixel is an area in every layout: however coarse the probe, its convolution has its energy.
+TEST(Diffuse, KeepsTheEnergyOfACoarseProbeInAnyLayout) {
+    const Scratch scratch;
+    const auto energy = [&](const std::string& name, const std::string& layout) {
+        const ToolResult told = runTool({"info", "--json", "--from", layout, name}, scratch.path());
+        return nlohmann::json::parse(told.out).at("energy")[0].get<double>();
+    };
+    for (const std::string layout :
+         {"vcross", "octahedral", "angular", "mirrorball", "exr-latlong", "exr-cube"}) {
+        for (const char* size : {"3", "16"}) {
+            ASSERT_EQ(
+                runTool({"convert", "builtin:sky", "--to", layout, "--size", size, "-o", "p.exr"},
+                        scratch.path())
+                    .exit_code,
+                0);
+            const ToolResult made = runTool({"diffuse", "p.exr", "--from", layout, "--to",
+                                             "latlong", "--size", "32", "-o", "d.exr"},
+                                            scratch.path());
+            ASSERT_EQ(made.exit_code, 0) << made.err;
+            EXPECT_NEAR(energy("d.exr", "latlong") / energy("p.exr", layout), 1, 2e-3)
+                << layout << " " << size;
+        }
+    }
+}
+
 TEST(Specular, ChainHasTheLevelsAskedAndTheirLobes) {
     const Scratch scratch;
     const ToolResult result = runTool({"specular", "builtin:sky", "--levels", "5", "--size", "16",

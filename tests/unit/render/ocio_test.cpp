@@ -9,6 +9,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include <unistd.h>
+
 namespace OCIO = OCIO_NAMESPACE;
 
 namespace ibl {
@@ -96,7 +98,9 @@ colorspaces:
     ~OcioConfig() override { std::filesystem::remove_all(folder_); }
     std::string path() const { return (folder_ / "config.ocio").string(); }
 
-    const std::filesystem::path folder_{testing::TempDir() + "ibl_ocio"};
+    // Tests run beside each other, and beside those of another tree.
+    const std::filesystem::path folder_{testing::TempDir() + "ibl_ocio_" +
+                                        std::to_string(getpid())};
 };
 
 TEST_F(OcioConfig, ViewsAreOpenColorIosOwn) {

@@ -12,6 +12,8 @@
 #include <fstream>
 #include <limits>
 
+#include <unistd.h>
+
 namespace ibl {
 namespace {
 
@@ -202,7 +204,8 @@ protected:
     void write(const std::string& name, const std::string& text) const {
         std::ofstream(folder_ / name) << text;
     }
-    const std::filesystem::path folder_{testing::TempDir() + "ibl_shader_folder"};
+    const std::filesystem::path folder_{testing::TempDir() + "ibl_shader_folder_" +
+                                        std::to_string(getpid())};
 };
 
 TEST_F(ShaderFolder, FilesReplaceTheEmbeddedOnes) {
