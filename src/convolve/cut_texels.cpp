@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 namespace ibl {
@@ -22,13 +23,10 @@ struct Inside {
 };
 
 Inside clipped(const V2d& from, const V2d& to) {
+    const std::optional<V2d> crossings = rimCrossings(from, to);
+    if (!crossings || crossings->x >= 1 || crossings->y <= 0) return {from, from, false, false};
+    const double t0 = crossings->x, t1 = crossings->y;
     const V2d d = to - from;
-    const double a = d.dot(d), b = from.dot(d), c = from.dot(from) - 1;
-    const double discriminant = b * b - a * c;
-    if (discriminant <= 0) return {from, from, false, false};
-    const double root = std::sqrt(discriminant);
-    const double t0 = (-b - root) / a, t1 = (-b + root) / a;
-    if (t0 >= 1 || t1 <= 0) return {from, from, false, false};
     return {t0 > 0 ? from + d * t0 : from, t1 < 1 ? from + d * t1 : to, t0 > 0, t1 < 1};
 }
 

@@ -69,14 +69,11 @@ double sweptOutside(const V2d& from, const V2d& to) {
 }
 
 double sweptAlong(Layout layout, const V2d& from, const V2d& to) {
-    // Where |from + t (to - from)| = 1.
+    const std::optional<V2d> crossings = rimCrossings(from, to);
+    if (!crossings) return sweptOutside(from, to);
     const V2d d = to - from;
-    const double a = d.dot(d), b = from.dot(d), c = from.dot(from) - 1;
-    const double discriminant = b * b - a * c;
-    if (discriminant <= 0) return sweptOutside(from, to);
-    const double root = std::sqrt(discriminant);
-    const double t0 = std::clamp((-b - root) / a, 0.0, 1.0);
-    const double t1 = std::clamp((-b + root) / a, 0.0, 1.0);
+    const double t0 = std::clamp(crossings->x, 0.0, 1.0);
+    const double t1 = std::clamp(crossings->y, 0.0, 1.0);
     const V2d enter = from + d * t0, leave = from + d * t1;
     return sweptOutside(from, enter) + sweptInside(layout, enter, leave) + sweptOutside(leave, to);
 }
@@ -186,6 +183,15 @@ V2d squareMapPoint(Layout layout, const V3d& direction) {
     if (across == 0) return {0.5 * (rho + 1), 0.5};
     const double right = layout == Layout::angular ? -direction.x : direction.x;
     return {0.5 * (right / across * rho + 1), 0.5 * (1 - direction.y / across * rho)};
+}
+
+std::optional<V2d> rimCrossings(const V2d& from, const V2d& to) {
+    const V2d d = to - from;
+    const double a = d.dot(d), b = from.dot(d), c = from.dot(from) - 1;
+    const double discriminant = b * b - a * c;
+    if (discriminant <= 0) return std::nullopt;
+    const double root = std::sqrt(discriminant);
+    return V2d((-b - root) / a, (-b + root) / a);
 }
 
 std::optional<V2i> owningTexel(Layout layout, int n, int x, int y) {

@@ -34,6 +34,10 @@ std::optional<Imath::V3d> squareMapDirection(Layout layout, double u, double v);
 /// point at b = 0, a = 1 is given.
 Imath::V2d squareMapPoint(Layout layout, const Imath::V3d& direction);
 
+/// The t at which from + t (to - from), in [-1, 1] with the disc of radius 1, crosses a ball map's
+/// rim, the lesser first; nothing for a line that misses or only touches it.
+std::optional<Imath::V2d> rimCrossings(const Imath::V2d& from, const Imath::V2d& to);
+
 /// The texel that the points of texel (x, y) of an n x n map belong to: itself, unless its centre
 /// is outside the disc. Nothing where the texel has no part in the disc.
 std::optional<Imath::V2i> owningTexel(Layout layout, int n, int x, int y);
