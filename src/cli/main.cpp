@@ -1,6 +1,7 @@
 #include "cli/commands.h"
 
 #include "core/error.h"
+#include "core/heap.h"
 
 #include <algorithm>
 #include <csignal>
@@ -99,6 +100,7 @@ int main(int argc, char** argv) {
     // reasons to vanish.
     std::signal(SIGPIPE, SIG_IGN);
     std::signal(SIGXFSZ, SIG_IGN);
+    ibl::keepHeap();
     try {
         ibl::runCommandLine(argc, argv);
         std::cout.flush();

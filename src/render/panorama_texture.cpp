@@ -23,19 +23,24 @@ void requireSize(const std::string& name, GLenum limit_name, int side) {
 // slow at adding it (Mesa 22: 25 ms for 1024x512, here 3).
 void uploadRows(const Texture& texture, int face, const V2i& at, const V2i& size,
                 const float* pixels, int stride, int level = 0) {
-    std::vector<float> rgba(static_cast<std::size_t>(size.x) * size.y * 4, 1.0f);
-    for (int y = 0; y < size.y; ++y) {
-        const float* from = pixels + static_cast<std::size_t>(y) * stride * 3;
-        float* to = rgba.data() + static_cast<std::size_t>(y) * size.x * 4;
-        for (int x = 0; x < size.x; ++x)
-            std::copy_n(from + 3 * x, 3, to + 4 * x);
-    }
-    if (face < 0) {
-        glTextureSubImage2D(texture.id(), level, at.x, at.y, size.x, size.y, GL_RGBA, GL_FLOAT,
-                            rgba.data());
-    } else {
-        glTextureSubImage3D(texture.id(), level, at.x, at.y, face, size.x, size.y, 1, GL_RGBA,
-                            GL_FLOAT, rgba.data());
+    constexpr int kStrip = 1 << 16; // texels at a time, which stay in the cache
+    const int rows = std::max(1, kStrip / size.x);
+    std::vector<float> rgba(static_cast<std::size_t>(size.x) * std::min(rows, size.y) * 4, 1.0f);
+    for (int top = 0; top < size.y; top += rows) {
+        const int count = std::min(rows, size.y - top);
+        for (int y = 0; y < count; ++y) {
+            const float* from = pixels + static_cast<std::size_t>(top + y) * stride * 3;
+            float* to = rgba.data() + static_cast<std::size_t>(y) * size.x * 4;
+            for (int x = 0; x < size.x; ++x)
+                std::copy_n(from + 3 * x, 3, to + 4 * x);
+        }
+        if (face < 0) {
+            glTextureSubImage2D(texture.id(), level, at.x, at.y + top, size.x, count, GL_RGBA,
+                                GL_FLOAT, rgba.data());
+        } else {
+            glTextureSubImage3D(texture.id(), level, at.x, at.y + top, face, size.x, count, 1,
+                                GL_RGBA, GL_FLOAT, rgba.data());
+        }
     }
 }
 
