@@ -157,10 +157,13 @@ EglContext EglContext::ofDevice(int number) {
     std::string names;
     for (std::size_t i = 0; i < devices.size(); ++i)
         names += (i ? ", " : "") + std::to_string(i) + " (" + nameOf(devices[i]) + ")";
+    const std::string count = devices.size() == 1
+                                  ? "is 1 device: "
+                                  : "are " + std::to_string(devices.size()) + " devices: ";
     throw Error(ExitCode::missing,
                 "EGL: device " + std::to_string(number) +
-                    (exists ? " gives no OpenGL 4.5" : " is not on this machine") + "; there are " +
-                    names);
+                    (exists ? " gives no OpenGL 4.5" : " is not on this machine") + "; there " +
+                    count + names);
 }
 
 std::vector<std::string> eglDevices() {

@@ -164,6 +164,32 @@ TEST(Render, NeedsNoDisplay) {
     EXPECT_NE(result.err.find("device: "), std::string::npos) << result.err;
 }
 
+TEST(Render, ADeviceThatIsNotThereIsAnsweredWithThoseThatAre) {
+    const Scratch scratch;
+    const Words words{"render", "--probe", "builtin:furnace", "-o", "o.png", "--size", "8x8"};
+    const auto with = [&](const Words& more) {
+        Words all = words;
+        all.insert(all.end(), more.begin(), more.end());
+        return runTool(all, scratch.path());
+    };
+    const std::string said = with({"--verbose"}).err;
+    std::string names;
+    int count = 0;
+    for (;; ++count) {
+        const std::string line = "EGL device " + std::to_string(count) + ": ";
+        const std::size_t at = said.find(line);
+        if (at == said.npos) break;
+        const std::size_t begin = at + line.size();
+        names += (count ? ", " : "") + std::to_string(count) + " (" +
+                 said.substr(begin, said.find('\n', begin) - begin) + ")";
+    }
+    ASSERT_GT(count, 0) << said;
+    const std::string there =
+        count == 1 ? "is 1 device: " : "are " + std::to_string(count) + " devices: ";
+    expectRefused(with({"--device", "63"}), 3,
+                  "device 63 is not on this machine; there " + there + names + "\n");
+}
+
 TEST(Render, DepthOfFieldBlursWhatIsOutOfFocus) {
     const Scratch scratch;
     const auto drawn = [&](const char* name, std::vector<std::string> more) {
