@@ -2,4 +2,4 @@
 layout(binding = 2) uniform sampler2D image;
 uniform ivec2 tile_origin;
 
-vec4 behind() { return vec4(texelFetch(image, tile_origin + ivec2(gl_FragCoord.xy), 0).rgb, 1.0); }
+vec3 behind() { return texelFetch(image, tile_origin + ivec2(gl_FragCoord.xy), 0).rgb; }

@@ -1,1 +1,1 @@
-vec4 behind() { return vec4(probeRadiance(viewRay()), 1.0); }
+vec3 behind() { return probeRadiance(viewRay()); }

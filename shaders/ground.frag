@@ -5,8 +5,8 @@
 // picture has a smaller albedo or already stands in shadow: then the difference would be more than
 // there is, and the picture itself loses that share (the relative error of the same paper). The two
 // agree where they meet, and the choice is the same in and out of the shadow, so neither draws an
-// edge. Without a known albedo it is always the latter. Over nothing the shadow is alpha, with
-// black, by the luminance of D / E. Defined: GROUND_ALBEDO (known), GROUND_ALPHA (over nothing).
+// edge. Without a known albedo it is always the latter. Alpha is the luminance of D / E, whatever is
+// behind; over nothing the shadow is that, with black. Defined: GROUND_ALBEDO (known).
 layout(binding = 9) uniform sampler2D kept; // from the ground, by this batch's lights
 uniform vec3 ground_irradiance;             // of all directional lights, without the object
 #if GROUND_ALBEDO
@@ -15,7 +15,8 @@ uniform vec3 ground_albedo;
 out vec4 color;
 
 void main() {
-    vec4 picture = first_batch ? behind() : vec4(0.0);
+    vec3 picture = first_batch ? behind() : vec3(0.0);
+    float alpha = 0.0;
     vec3 ray = viewRay();
     if (ray.y < 0.0) {
         vec3 lost = texelFetch(kept, ivec2(gl_FragCoord.xy), 0).rgb, whole = ground_irradiance;
@@ -28,18 +29,15 @@ void main() {
             if (lights[i].place.w > 0.0) whole += irradiance * max(l.y, 0.0);
         }
 #endif
-#if GROUND_ALPHA
         const vec3 luminance = vec3(0.2125, 0.7154, 0.0721);
         float light = dot(whole, luminance);
-        if (light > 0.0) picture.a += dot(lost, luminance) / light;
-#else
-        vec3 radiance = behind().rgb; // of which the share is lost
+        if (light > 0.0) alpha = dot(lost, luminance) / light;
+        vec3 radiance = behind(); // of which the share is lost
 #if GROUND_ALBEDO
         radiance = min(radiance, ground_albedo / 3.14159265358979 * whole);
 #endif
         vec3 share = lost / max(whole, 1e-30);
-        picture.rgb -= radiance * mix(vec3(0.0), share, greaterThan(whole, vec3(0.0)));
-#endif
+        picture -= radiance * mix(vec3(0.0), share, greaterThan(whole, vec3(0.0)));
     }
-    color = picture;
+    color = vec4(picture, alpha);
 }

@@ -182,15 +182,17 @@ Frame drawFrame(Session& session, const RenderOptions& options, const FramePlace
     drawing.bad_pixels += countNotFinite(frame.picture);
     if (!scene.lights.empty()) reportLights(session, drawing.renderer->lightCounts());
     const bool blurs = options.lens.blurs(place);
-    if (!blurs && options.picture.aovs.empty()) return frame;
-    FrameAovs aovs = session.stage("aov", [&] { return drawing.renderer->renderAovs(camera); });
-    if (blurs) {
-        session.stage("lens", [&] {
-            throughLens(drawing.context, options.lens, place, camera, drawing.frame, scene.ground,
-                        aovs, session.threads(), frame.picture);
-        });
+    if (blurs || !options.picture.aovs.empty()) {
+        FrameAovs aovs = session.stage("aov", [&] { return drawing.renderer->renderAovs(camera); });
+        if (blurs) {
+            session.stage("lens", [&] {
+                throughLens(drawing.context, options.lens, place, camera, drawing.frame,
+                            scene.ground, aovs, session.threads(), frame.picture);
+            });
+        }
+        frame.aovs = aovChannels(options.picture, std::move(aovs));
     }
-    if (!options.picture.aovs.empty()) frame.aovs = aovChannels(options.picture, std::move(aovs));
+    if (drawing.frame.matte) frame.aovs.push_back(takeMatte(frame.picture));
     return frame;
 }
 
@@ -271,6 +273,8 @@ void runRender(const RenderOptions& options) {
     requireSound(options, own_shader);
     FrameOptions frame = options.picture.frame;
     frame.shadow_size = options.lights.shadow_size.value_or(0);
+    frame.matte =
+        options.lights.ground && options.picture.background != "none" && isExr(options.output);
     std::optional<Image> plate; // of the first frame, whose size all frames have
     const std::string plate_name =
         nameOfFrame(options.lights.plate, options.frames, {options.frames.first, 0, 1});

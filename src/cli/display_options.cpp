@@ -185,8 +185,12 @@ double deltaOf(const DisplayArguments& arguments) {
     return arguments.delta.value_or(kStandardDelta);
 }
 
+bool isExr(const ImageOutputOptions& output) {
+    return formatOf(output.output, output.format) == "exr";
+}
+
 void requireExr(const ImageOutputOptions& output, const std::string& option) {
-    if (formatOf(output.output, output.format) == "exr") return;
+    if (isExr(output)) return;
     throw Error(ExitCode::usage, option + " is of EXR files; leave it out, or write .exr");
 }
 

@@ -37,6 +37,7 @@ void requireFitting(const DisplayArguments& arguments, const ImageOutputOptions&
                     int frames = 1);
 
 /// Refuses an option that EXR files alone have.
+bool isExr(const ImageOutputOptions& output);
 void requireExr(const ImageOutputOptions& output, const std::string& option);
 
 /// The delta of the log-average.

@@ -134,6 +134,9 @@ struct PictureArguments {
 void bindPicture(CLI::App& app, PictureArguments& arguments);
 /// The channels that `--aov` asks for.
 std::vector<ExtraChannel> aovChannels(const PictureArguments& arguments, FrameAovs aovs);
+/// Takes alpha out of the picture, as the channel `matte.A`. Were it the picture's own, whose
+/// background is whole, readers would divide the colours by it.
+ExtraChannel takeMatte(Image& picture);
 /// The background of that name: the arguments' own, or a frame's.
 Background backgroundOf(Session& session, const std::string& name);
 

@@ -62,6 +62,20 @@ std::vector<ExtraChannel> aovChannels(const PictureArguments& arguments, FrameAo
     return channels;
 }
 
+ExtraChannel takeMatte(Image& picture) {
+    ExtraChannel matte{"matte.A", {}};
+    const std::size_t pixels = picture.pixels.size() / 4;
+    matte.values.reserve(pixels);
+    for (std::size_t i = 0; i < pixels; ++i) {
+        matte.values.push_back(picture.pixels[4 * i + 3]);
+        for (std::size_t c = 0; c < 3; ++c)
+            picture.pixels[3 * i + c] = picture.pixels[4 * i + c];
+    }
+    picture.pixels.resize(3 * pixels);
+    picture.channels = 3;
+    return matte;
+}
+
 void bindDevice(CLI::App& app, DeviceArguments& arguments) {
     app.add_option_function<std::string>(
            "--device",

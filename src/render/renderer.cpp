@@ -61,7 +61,7 @@ void Renderer::State::uploadScene(const Scene& scene) {
         image = uploadImage(*picture, "background image");
     }
     if (const auto* color = std::get_if<ColorBackground>(&scene.background)) clear_color = *color;
-    opaque = !std::holds_alternative<NoBackground>(scene.background);
+    with_alpha = options.matte || std::holds_alternative<NoBackground>(scene.background);
     extent = extentOf(scene.object);
     parts = partsOf(scene.object);
     surfaces = uploadSurfaces(scene.object);
@@ -110,10 +110,7 @@ std::vector<std::string> Renderer::State::mapDefinitions() const {
         definitions.insert(definitions.end(), more.begin(), more.end());
     };
     if (lighting) define(lighting->definitions());
-    if (ground) {
-        define({"GROUND_ALBEDO " + std::to_string(ground->albedo.has_value()),
-                "GROUND_ALPHA " + std::to_string(!opaque)});
-    }
+    if (ground) define({"GROUND_ALBEDO " + std::to_string(ground->albedo.has_value())});
     return definitions;
 }
 
@@ -184,7 +181,6 @@ void Renderer::State::makeBackground(const Scene& scene) {
 
 void Renderer::State::makeGround() {
     setUniform(background, "plain_color", V3d(clear_color));
-    setUniform(background, "plain_alpha", opaque ? 1.0 : 0.0);
     setUniform(background, "ground_height", ground->height);
     if (ground->albedo) setUniform(background, "ground_albedo", *ground->albedo);
     ground_shadow = makeProgram(
@@ -290,7 +286,7 @@ void Renderer::change(const Material& material, const Turn& turn, const Placemen
 
 Image Renderer::render(const Camera& camera, Image spare) {
     const int width = state_->options.width, height = state_->options.height;
-    const int channels = state_->opaque ? 3 : 4;
+    const int channels = state_->with_alpha ? 4 : 3;
     Image frame = std::move(spare);
     if (frame.width != width || frame.height != height || frame.channels != channels)
         frame = Image(width, height, channels);

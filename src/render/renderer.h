@@ -22,6 +22,7 @@ struct FrameOptions {
     /// height, 256 to 2048; where only a ground is lit, not so large that the maps of up to 256
     /// lights take more than 256 MiB.
     int shadow_size = 0;
+    bool matte = false; ///< pictures with a background have alpha, too
 };
 
 /// What is known of a frame beside its colours, at the centre of each pixel: nothing of it is
@@ -51,7 +52,9 @@ public:
     /// another place of the object, without another upload.
     void change(const Material& material, const Turn& turn, const Placement& placement);
 
-    /// Scene-linear pixels: RGBA, premultiplied, when the scene has no background, otherwise RGB.
+    /// Scene-linear pixels: RGBA, premultiplied, when the scene has no background, otherwise RGB,
+    /// or with `matte` RGBA, whose colours are whole and whose alpha is what it is without the
+    /// background: 1 on the object, D / E by luminance on the ground, 0 elsewhere.
     /// Throws Error (usage) for a camera below the ground. The picture takes over the memory of
     /// `spare`, an earlier one that is no longer needed: the system clears new memory, page by
     /// page.

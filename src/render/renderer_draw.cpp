@@ -163,8 +163,7 @@ void Renderer::State::drawSample(const CameraRays& rays, const V2i& tile, const 
     glBindFramebuffer(GL_FRAMEBUFFER, to_sample.id());
     if (!background || batch > 0) {
         const V3f color_behind = batch > 0 ? V3f(0) : clear_color;
-        const std::array<float, 4> color{color_behind.x, color_behind.y, color_behind.z,
-                                         opaque && batch == 0 ? 1.f : 0.f};
+        const std::array<float, 4> color{color_behind.x, color_behind.y, color_behind.z, 0};
         glClearBufferfv(GL_COLOR, 0, color.data());
     }
     const float far_depth = 1;
@@ -243,8 +242,8 @@ void Renderer::State::drawFrame(const Camera& camera, Image& frame) {
             glBindTextureUnit(0, accumulate ? sum.id() : sample.id());
             drawFullscreen(resolve);
             glReadPixels(0, 0, std::min(size.x, options.width - x),
-                         std::min(size.y, options.height - y), opaque ? GL_RGB : GL_RGBA, GL_FLOAT,
-                         frame.at(x, y));
+                         std::min(size.y, options.height - y), with_alpha ? GL_RGBA : GL_RGB,
+                         GL_FLOAT, frame.at(x, y));
         }
     }
     checkGl("drawing the picture");

@@ -20,7 +20,7 @@ using Imath::V2i;
 
 struct Renderer::State {
     FrameOptions options;
-    bool opaque = true;
+    bool with_alpha = false; ///< the picture is read
     V3f clear_color{0, 0, 0};
     Extent extent;
     std::vector<Part> parts;

@@ -115,6 +115,53 @@ TEST(RenderLights, PlateGivesItsSizeAndKeepsWhatIsNotShadowed) {
     EXPECT_EQ(render(scratch, first).pixels, render(scratch, second, "p.exr").pixels);
 }
 
+// What a compositor needs beside the finished picture: alpha as without the background, in a layer
+// of its own, since the picture is whole. PNG has no layers.
+TEST(RenderLights, PlatesExrHasTheMatteInALayer) {
+    const Scratch scratch;
+    const Words common{"--probe", "builtin:sky", "--object", "torus",      "--shader",
+                       "lambert", "--lights",    "60",       "--ground",   "--elevation",
+                       "30",      "--samples",   "4",        "--distance", "8",
+                       "--size",  "40x30"};
+    const auto with = [&](const Words& more, const std::string& out) {
+        Words words = common;
+        words.insert(words.end(), more.begin(), more.end());
+        return render(scratch, words, out);
+    };
+    const Image alone = with({"--background", "none"}, "none.exr");
+    render(scratch, {"--probe", "builtin:compass", "--size", "40x30"}, "plate.exr");
+    const Image finished = with({"--plate", "plate.exr"}, "plated.exr");
+    const Image coded = with({"--plate", "plate.exr"}, "plated.png");
+    EXPECT_EQ(finished.channels, 3);
+    EXPECT_EQ(coded.channels, 3);
+    const Image plate = readImage((scratch / "plate.exr").string()).image;
+    const auto matteOf = [&](const std::string& name) {
+        return readImage((scratch / name).string(), {"matte"}).image;
+    };
+    const Image matte = matteOf("plated.exr");
+    int partial = 0, none = 0, full = 0;
+    for (std::size_t i = 0; i < matte.pixels.size(); i += 3) {
+        const float alpha = alone.pixels[i / 3 * 4 + 3];
+        ASSERT_EQ(matte.pixels[i], alpha);
+        partial += alpha > 0.05 && alpha < 0.95;
+        full += alpha > 1 - 1e-6;
+        if (alpha != 0) continue;
+        ++none;
+        for (std::size_t c = i; c < i + 3; ++c)
+            ASSERT_EQ(finished.pixels[c], plate.pixels[c]);
+    }
+    EXPECT_GT(partial, 50);
+    EXPECT_GT(none, 20);
+    EXPECT_GT(full, 50);
+    // Out of focus, too.
+    const Image blurred = with({"--background", "none", "--aperture", "0.4"}, "blurred.exr");
+    with({"--plate", "plate.exr", "--aperture", "0.4"}, "plated.exr");
+    const Image soft = matteOf("plated.exr");
+    for (std::size_t i = 0; i < soft.pixels.size(); i += 3)
+        ASSERT_EQ(soft.pixels[i], blurred.pixels[i / 3 * 4 + 3]);
+    EXPECT_NE(soft.pixels, matte.pixels);
+}
+
 TEST(RenderLights, SameBytesForAnyThreads) {
     const Scratch scratch;
     const auto run = [&](const char* threads) {
