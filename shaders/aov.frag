@@ -1,5 +1,4 @@
 // In a material's place: the normal as the colour, and depth and part beside it.
-uniform float part_id;
 layout(location = 1) out vec2 depth_and_id;
 
 vec3 shade(vec3 normal, vec3 incident) {

@@ -12,7 +12,7 @@ void main() {
     surface_point = vertex_position;
     vec3 facet = normalize(cross(dFdx(vertex_position), dFdy(vertex_position)));
     facet_normal = dot(facet, viewRay()) > 0.0 ? -facet : facet;
-    if (surface_alpha < alpha_cutoff) discard;
+    if (isMissing(surface_alpha)) discard;
     vec3 radiance = shade(gl_FrontFacing ? normal : -normal, normalize(viewRay()));
     color = vec4(radiance + surface_emission, 1.0);
 }

@@ -44,7 +44,7 @@ void main() {
     // |ray| is the ray's length for a step of 1 along the view.
     float distance = (inside ? half_chord : -half_chord) - dot(sphere_eye, incident);
     surface_depth = sphere_radius * distance / length(ray);
-    if (surface_alpha < alpha_cutoff) discard;
+    if (isMissing(surface_alpha)) discard;
     vec3 normal = inside ? -outward : outward;
     surface_outside = !inside;
     surface_point = sphere_centre + sphere_radius * outward;

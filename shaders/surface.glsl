@@ -5,12 +5,13 @@ uniform vec3 base_color; // the material's
 uniform vec3 part_color;
 uniform vec3 part_emission;
 uniform float part_alpha;
-uniform float alpha_cutoff;
 uniform float normal_scale;
 layout(binding = 12) uniform sampler2D base_texture;
 layout(binding = 13) uniform sampler2D metallic_roughness_texture;
 layout(binding = 14) uniform sampler2D normal_texture;
 layout(binding = 15) uniform sampler2D emissive_texture;
+layout(binding = 20) uniform sampler2D alpha_texture;
+uniform float base_premultiplied; // 1: the base texture's colours are multiplied by its alpha
 
 vec3 surface_color, surface_emission;
 float surface_metallic = 1.0, surface_roughness = 1.0;
@@ -28,8 +29,11 @@ void readSurface(vec2 uv, vec2 dx, vec2 dy) {
     surface_alpha = part_alpha;
 #ifdef BASE_TEXTURE
     vec4 base = textureGrad(base_texture, uv, dx, dy);
-    surface_color *= base.rgb;
+    surface_color *= base.rgb / mix(1.0, max(base.a, 1e-30), base_premultiplied);
     surface_alpha *= base.a;
+#endif
+#ifdef ALPHA_TEXTURE
+    surface_alpha *= textureGrad(alpha_texture, uv, dx, dy).r;
 #endif
 #ifdef METALLIC_ROUGHNESS_TEXTURE
     vec3 texel = textureGrad(metallic_roughness_texture, uv, dx, dy).rgb;

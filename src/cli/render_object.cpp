@@ -1,6 +1,7 @@
 #include "cli/render_options.h"
 
 #include "core/error.h"
+#include "render/builtin_objects.h"
 
 #include <filesystem>
 
@@ -27,17 +28,34 @@ void bindPlacement(CLI::App& app, ObjectArguments& arguments, FrameRange& frames
         ->group("Object");
 }
 
-/// Lays the texture over all parts.
+bool isTransparent(const Image& image) {
+    if (image.channels != 4) return false;
+    for (std::size_t i = 3; i < image.pixels.size(); i += 4) {
+        if (image.pixels[i] < 1) return true;
+    }
+    return false;
+}
+
+/// Lays the texture over all parts. What shows its inside through holes is of triangles: the exact
+/// sphere is but its near side.
 void addBaseTexture(Session& session, const std::string& path, Object& object) {
     if (object.mesh && object.mesh->texcoords.empty()) {
         throw Error(ExitCode::usage, "--base-texture: the object has no texture coordinates; leave "
                                      "it out, or give an object that has");
     }
-    Image texture = session.readPicture(path, "texture");
+    Image texture = session.readPicture(path, "texture", true);
+    const bool transparent = isTransparent(texture);
+    if (transparent && !object.mesh) object.mesh = makeSphere();
     object.parts = partsOf(object);
-    for (Part& part : object.parts)
-        part.surface.base_texture = object.textures.size();
-    object.textures.push_back({std::move(texture), Wrap::repeat, Wrap::repeat});
+    for (Part& part : object.parts) {
+        Surface& surface = part.surface;
+        surface.base_texture = object.textures.size();
+        if (!transparent || surface.alpha_cutoff != 0) continue;
+        surface.alpha = 1; // did not count
+        surface.alpha_cutoff = kBlended;
+    }
+    const bool premultiplied = texture.channels == 4;
+    object.textures.push_back({std::move(texture), Wrap::repeat, Wrap::repeat, premultiplied});
 }
 
 ObjectFile readNamed(Session& session, const std::string& name) {

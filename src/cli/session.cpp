@@ -120,9 +120,10 @@ ProbeFile Session::readUnscreened(const ProbeOptions& options) {
     return file;
 }
 
-Image Session::readPicture(const std::string& path, const char* stage_name) {
+Image Session::readPicture(const std::string& path, const char* stage_name, bool keep_alpha) {
     addInput(path);
     ReadOptions how;
+    how.keep_alpha = keep_alpha;
     how.threads = threads();
     how.finite = true;
     ImageFile file = stage(stage_name, [&] { return readImage(path, how); });

@@ -57,9 +57,9 @@ public:
     /// Its pixels alone.
     Panorama readProbe(const ProbeOptions& options) { return readScreened(options).panorama; }
 
-    /// Reads an image that is no probe, such as a texture, in a stage of that name. NaN and
-    /// infinite values are refused.
-    Image readPicture(const std::string& path, const char* stage_name);
+    /// Reads an image that is no probe, such as a texture, in a stage of that name; with alpha, if
+    /// it has some and it is to be kept. NaN and infinite values are refused.
+    Image readPicture(const std::string& path, const char* stage_name, bool keep_alpha = false);
 
     /// Reads the probe and says what was not plain in its file, whatever its pixels are.
     ProbeFile readUnscreened(const ProbeOptions& options);

@@ -215,6 +215,29 @@ Mesh makeCone() {
     return mesh;
 }
 
+Mesh makeSphere() {
+    constexpr std::uint32_t rows = kAround / 2;
+    Mesh mesh;
+    for (std::uint32_t row = 0; row <= rows; ++row) {
+        const double theta = kPi * row / rows;
+        const bool is_pole = row == 0 || row == rows;
+        for (std::uint32_t column = 0; column <= kAround; ++column) {
+            // A pole has a vertex for each of its triangles, between the other two corners.
+            const double u = (column + (is_pole ? 0.5 : 0.0)) / kAround;
+            const double radius = is_pole ? 0 : std::sin(theta);
+            mesh.positions.emplace_back(aroundAxis(radius, std::cos(theta), u));
+            mesh.normals.push_back(mesh.positions.back());
+            mesh.texcoords.emplace_back(V2d(u, double(row) / rows));
+            if (row == rows || column == kAround) continue;
+            const std::uint32_t a = row * (kAround + 1) + column, b = a + kAround + 1;
+            const bool last = row + 1 == rows;
+            if (!last) mesh.indices.insert(mesh.indices.end(), {a, b, b + 1});
+            if (row > 0) mesh.indices.insert(mesh.indices.end(), {a, last ? b : b + 1, a + 1});
+        }
+    }
+    return mesh;
+}
+
 Mesh makeTorus() {
     // At 1000 pixels across, the sagitta of a chord is below a sixth of a pixel. Finer is dear:
     // software rasterisers shade blocks of 16 pixels for every triangle in them.

@@ -33,6 +33,9 @@ Mesh makeCylinder();
 /// side it is an equilateral triangle.
 Mesh makeCone();
 
+/// The unit sphere as triangles, textured as the exact one is.
+Mesh makeSphere();
+
 /// A ring about the Z axis, facing the viewer at azimuth 0: tube radius 0.3 about a circle of 0.7.
 Mesh makeTorus();
 

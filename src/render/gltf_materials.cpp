@@ -116,10 +116,7 @@ Surface GltfMaterials::read(const GltfJson& material) {
     }
     const std::string mode = gltfString(document_, material, "alphaMode");
     if (mode == "MASK") surface.alpha_cutoff = gltfNumber(document_, material, "alphaCutoff", 0.5);
-    if (mode == "BLEND") {
-        result_.notes.push_back("material " + gltfString(document_, material, "name") +
-                                " is transparent; it is drawn opaque");
-    }
+    if (mode == "BLEND") surface.alpha_cutoff = kBlended;
     return surface;
 }
 

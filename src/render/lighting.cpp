@@ -99,9 +99,11 @@ Lighting::Lighting(const Scene& scene, const std::vector<std::string>& surfaces,
       map_size_(map_size),
       samples_(samples) {
     if (maps_needed_) {
-        draw_depth_ =
-            makeProgram({{"shadow_map.vert"}, {"surface.glsl", "shadow_map.frag"}, surfaces, {}},
-                        shader_folder);
+        draw_depth_ = makeProgram({{"shadow_map.vert"},
+                                   {"coverage.glsl", "surface.glsl", "shadow_map.frag"},
+                                   surfaces,
+                                   {}},
+                                  shader_folder);
         GLuint id = 0;
         glCreateFramebuffers(1, &id);
         to_layer_ = Framebuffer(id);
@@ -259,6 +261,7 @@ void Lighting::drawMaps(const Batch& batch, const DrawCaster& draw) {
         glClearBufferfv(GL_DEPTH, 0, &farthest);
         const ShadowView& view = views_[batch.first_view + static_cast<std::size_t>(layer)];
         setUniform(draw_depth_, "clip_from_object", matrixOf(similarity_) * view.clip_from_world);
+        setUniform(draw_depth_, "sample_of", Imath::V2i(layer, wanted));
         draw(draw_depth_);
     }
     glDisable(GL_DEPTH_TEST);

@@ -33,10 +33,15 @@ struct Mesh {
 enum class Wrap { repeat, mirror, clamp };
 
 struct SurfaceTexture {
-    Image image; ///< linear; of 3 channels, or 4, the last an alpha not multiplied in
+    Image image; ///< linear; of 3 channels, or 4, the last an alpha
     Wrap across = Wrap::repeat;
     Wrap down = Wrap::repeat;
+    bool premultiplied = false; ///< colours are multiplied by alpha
 };
+
+/// As Surface::alpha_cutoff: alpha is how much of the surface there is; the rest shows what is
+/// behind it. Without it and a cutoff above 0, alpha does not count.
+constexpr double kBlended = -1;
 
 /// What a part of an object is made of. The shader's base colour tints `base_color`; emission is
 /// added to whatever it gives. Textures are places in Object::textures; factors multiply them.
@@ -46,12 +51,13 @@ struct Surface {
     std::optional<double> metallic, roughness; ///< instead of the shader's parameters of that name
     double normal_scale = 1;
     double alpha = 1;
-    double alpha_cutoff = 0; ///< what has less alpha is not there
+    double alpha_cutoff = 0; ///< what has less alpha is not there; kBlended
     std::optional<std::size_t> base_texture;
     std::optional<std::size_t> metallic_roughness_texture; ///< B metallic, G roughness
     std::optional<std::size_t> normal_texture; ///< x, y, z of the normal as 2 c - 1: x along u, y
                                                ///< against v, z outwards (glTF 2.0)
     std::optional<std::size_t> emissive_texture;
+    std::optional<std::size_t> alpha_texture; ///< its first channel
 };
 
 /// Triangles that are drawn together: `count` indices from the `first` on.

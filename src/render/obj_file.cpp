@@ -174,20 +174,38 @@ private:
     std::vector<Known> known_;          ///< by vertex
 };
 
-std::optional<std::size_t> addTexture(const std::string& path, const std::string& name, int threads,
-                                      ObjectFile& result,
-                                      std::map<std::string, std::size_t>& known) {
+enum class Reading { color, alpha };
+using KnownTextures = std::map<std::pair<std::string, Reading>, std::size_t>;
+
+// Alpha, or of an image without, its first channel.
+Image alphaOf(const Image& image) {
+    Image alpha(image.width, image.height);
+    const auto channels = static_cast<std::size_t>(image.channels);
+    const std::size_t from = image.channels == 4 ? 3 : 0;
+    for (std::size_t i = 0; i < alpha.pixels.size(); ++i)
+        alpha.pixels[i] = image.pixels[i / 3 * channels + from];
+    return alpha;
+}
+
+std::optional<std::size_t> addTexture(const std::string& path, const std::string& name,
+                                      Reading reading, int threads, ObjectFile& result,
+                                      KnownTextures& known) {
     if (name.empty()) return std::nullopt;
     std::string portable = name;
     std::ranges::replace(portable, '\\', '/');
     const std::string file = (fs::path(path).parent_path() / portable).string();
-    const auto [place, is_new] = known.try_emplace(file, result.object.textures.size());
+    const auto [place, is_new] = known.try_emplace({file, reading}, result.object.textures.size());
     if (is_new) {
+        const bool is_alpha = reading == Reading::alpha;
         ReadOptions how;
         how.threads = threads;
         how.finite = true;
-        result.object.textures.push_back({readImage(file, how).image, Wrap::repeat, Wrap::repeat});
-        result.files.push_back(file);
+        how.keep_alpha = how.undecoded = is_alpha;
+        Image image = readImage(file, how).image;
+        if (is_alpha) image = alphaOf(image);
+        result.object.textures.push_back({std::move(image), Wrap::repeat, Wrap::repeat});
+        const bool read_before = std::ranges::count(result.files, file) > 0;
+        if (!read_before) result.files.push_back(file);
     }
     return place->second;
 }
@@ -211,7 +229,7 @@ ObjectFile readObj(const std::string& path, int threads) {
                 position_of.push_back(static_cast<std::uint32_t>(corner.vertex_index));
         }
     }
-    std::map<std::string, std::size_t> textures;
+    KnownTextures textures;
     for (std::size_t id = 0; id < indices.size(); ++id) {
         if (indices[id].empty()) continue;
         Part part{mesh.indices.size(), indices[id].size(), {}};
@@ -221,7 +239,11 @@ ObjectFile readObj(const std::string& path, int threads) {
             part.surface.base_color = {m.diffuse[0], m.diffuse[1], m.diffuse[2]};
             part.surface.emissive = {m.emission[0], m.emission[1], m.emission[2]};
             part.surface.base_texture =
-                addTexture(path, m.diffuse_texname, threads, result, textures);
+                addTexture(path, m.diffuse_texname, Reading::color, threads, result, textures);
+            part.surface.alpha = m.dissolve;
+            part.surface.alpha_texture =
+                addTexture(path, m.alpha_texname, Reading::alpha, threads, result, textures);
+            if (m.dissolve < 1 || part.surface.alpha_texture) part.surface.alpha_cutoff = kBlended;
         }
         result.object.parts.push_back(std::move(part));
     }

@@ -101,7 +101,8 @@ void Renderer::State::drawObject(const Program& program, const CameraRays& rays,
     drawSphere(program, rays, tile);
 }
 
-void Renderer::State::drawFarSide(const CameraRays& rays, const V2d& jitter) const {
+void Renderer::State::drawFarSide(const CameraRays& rays, const V2d& jitter,
+                                  const V2i& sample_of) const {
     beginFarSide(*far_side);
     // Its pixels may be larger than the frame's.
     const V2d scale(static_cast<double>(options.width) / far_side->size.x,
@@ -110,6 +111,7 @@ void Renderer::State::drawFarSide(const CameraRays& rays, const V2d& jitter) con
     coarse.step_x *= scale.x;
     coarse.step_y *= scale.y;
     setView(far_side->program, coarse, (jitter - rays.centre) / scale);
+    setUniform(far_side->program, "sample_of", sample_of);
     drawMesh(far_side->program, rays, jitter);
     endFarSide(*far_side);
 }
@@ -152,13 +154,13 @@ void Renderer::State::drawGroundShadow(const CameraRays& rays, const V2i& tile,
     glBindTextureUnit(9, kept.id());
 }
 
-// One sample a pixel of a tile. `jitter` is the sample's place from the pixel's centre. The
-// background comes last, at the far plane, so that it is looked up only where it is seen. Batches
-// after the first add what their lights give, and no alpha.
+// One sample a pixel of a tile: which of how many. `jitter` is its place from the pixel's centre.
+// The background comes last, at the far plane, so that it is looked up only where it is seen.
+// Batches after the first add what their lights give, and no alpha.
 void Renderer::State::drawSample(const CameraRays& rays, const V2i& tile, const V2d& jitter,
-                                 int batch) const {
+                                 const V2i& sample_of, int batch) const {
     glViewport(-tile.x, -tile.y, options.width, options.height);
-    if (far_side) drawFarSide(rays, jitter);
+    if (far_side) drawFarSide(rays, jitter, sample_of);
     if (ground) drawGroundShadow(rays, tile, jitter);
     glBindFramebuffer(GL_FRAMEBUFFER, to_sample.id());
     if (!background || batch > 0) {
@@ -175,6 +177,7 @@ void Renderer::State::drawSample(const CameraRays& rays, const V2i& tile, const 
     const GLboolean rgb = batch == 0 || at_vertices, alpha = batch == 0;
     glColorMaski(0, rgb, rgb, rgb, alpha);
     setView(surface, rays, tile, jitter);
+    setUniform(surface, "sample_of", sample_of);
     drawObject(surface, rays, tile, jitter);
     glColorMaski(0, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     glBindFramebuffer(GL_FRAMEBUFFER, to_sample.id());
@@ -200,7 +203,8 @@ void Renderer::State::drawTile(const CameraRays& rays, const V2i& tile) {
             const bool any_light = lighting && lighting->useSample(static_cast<int>(i));
             if (batch > 0 && !any_light) continue;
             glBindTextureUnit(0, probe.texture.id());
-            drawSample(rays, tile, pattern[i] - V2d(0.5), batch);
+            drawSample(rays, tile, pattern[i] - V2d(0.5), {static_cast<int>(i), options.samples},
+                       batch);
             if (!accumulate) return;
             glBindFramebuffer(GL_FRAMEBUFFER, to_sum.id());
             glBindTextureUnit(0, sample.id());

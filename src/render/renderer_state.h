@@ -69,13 +69,14 @@ struct Renderer::State {
     void drawFullscreen(const Program& program) const;
     void lightSurface(const CameraRays& rays, const V2i& tile, const V2d& jitter) const;
     void drawGroundShadow(const CameraRays& rays, const V2i& tile, const V2d& jitter) const;
-    void drawSample(const CameraRays& rays, const V2i& tile, const V2d& jitter, int batch) const;
+    void drawSample(const CameraRays& rays, const V2i& tile, const V2d& jitter,
+                    const V2i& sample_of, int batch) const;
     void drawSphere(const Program& program, const CameraRays& rays, const V2i& tile) const;
     void drawObject(const Program& program, const CameraRays& rays, const V2i& tile,
                     const V2d& jitter) const;
     void drawMesh(const Program& program, const CameraRays& rays, const V2d& jitter) const;
     void drawParts(const Program& program) const;
-    void drawFarSide(const CameraRays& rays, const V2d& jitter) const;
+    void drawFarSide(const CameraRays& rays, const V2d& jitter, const V2i& sample_of) const;
     void drawTile(const CameraRays& rays, const V2i& tile);
     void placeLights(const CameraRays& rays);
     void drawFrame(const Camera& camera, Image& frame);

@@ -55,12 +55,12 @@ ProgramParts around(std::vector<std::string_view> shading, const SurfaceKind& ki
                       [](const std::string& d) { return d.starts_with("NORMAL_TEXTURE"); });
         parts.vertex = std::move(shading);
         parts.vertex.push_back("gouraud.vert");
-        parts.fragment = {"gouraud.frag"};
+        parts.fragment = {"coverage.glsl", "gouraud.frag"};
         return parts;
     }
     parts.vertex = {kind.is_mesh ? "mesh.vert" : "fullscreen.vert"};
     parts.fragment = std::move(shading);
-    parts.fragment.insert(parts.fragment.begin(), "view.glsl");
+    parts.fragment.insert(parts.fragment.begin(), {"view.glsl", "coverage.glsl"});
     if (kind.is_mesh) {
         parts.fragment.insert(parts.fragment.end(), {"mesh_normal.glsl", "mesh_surface.frag"});
     } else {
@@ -128,7 +128,7 @@ ProgramParts farSideParts(const SurfaceKind& kind, std::vector<std::string> defi
     for (std::string& d : kindDefinitions(kind))
         definitions.push_back(std::move(d));
     return {{"mesh.vert"},
-            {"view.glsl", "surface.glsl", "mesh_normal.glsl", "far_side.frag"},
+            {"view.glsl", "coverage.glsl", "surface.glsl", "mesh_normal.glsl", "far_side.frag"},
             std::move(definitions),
             {}};
 }

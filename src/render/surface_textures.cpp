@@ -10,7 +10,8 @@ namespace ibl {
 namespace {
 
 // Texture units of surface.glsl.
-constexpr GLuint kBaseUnit = 12, kMetallicRoughnessUnit = 13, kNormalUnit = 14, kEmissiveUnit = 15;
+constexpr GLuint kBaseUnit = 12, kMetallicRoughnessUnit = 13, kNormalUnit = 14, kEmissiveUnit = 15,
+                 kAlphaUnit = 20;
 
 GLint wrapOf(Wrap wrap) {
     return wrap == Wrap::clamp    ? GL_CLAMP_TO_EDGE
@@ -64,7 +65,7 @@ void setParameter(const Program& program, const Material& material, std::string_
 SurfaceTextures uploadSurfaces(const Object& object) {
     SurfaceTextures result;
     for (const SurfaceTexture& texture : object.textures)
-        result.textures.push_back(uploadTexture(texture));
+        result.textures.push_back({uploadTexture(texture), texture.premultiplied});
     result.white = oneTexel(1, 1, 1);
     result.flat = oneTexel(0.5F, 0.5F, 1);
     const auto define = [&](std::optional<std::size_t> Surface::*texture, const char* name) {
@@ -76,8 +77,9 @@ SurfaceTextures uploadSurfaces(const Object& object) {
     define(&Surface::metallic_roughness_texture, "METALLIC_ROUGHNESS_TEXTURE");
     define(&Surface::normal_texture, "NORMAL_TEXTURE");
     define(&Surface::emissive_texture, "EMISSIVE_TEXTURE");
+    define(&Surface::alpha_texture, "ALPHA_TEXTURE");
     const bool cut_outs = std::ranges::any_of(
-        object.parts, [](const Part& part) { return part.surface.alpha_cutoff > 0; });
+        object.parts, [](const Part& part) { return part.surface.alpha_cutoff != 0; });
     result.definitions.emplace_back(cut_outs ? "CUT_OUTS 1" : "CUT_OUTS 0");
     return result;
 }
@@ -86,12 +88,16 @@ void bindSurface(const SurfaceTextures& textures, const Program& program, const 
                  const Surface& surface) {
     const auto bind = [&](GLuint unit, const std::optional<std::size_t>& index,
                           const Texture& otherwise) {
-        glBindTextureUnit(unit, index ? textures.textures[*index].id() : otherwise.id());
+        glBindTextureUnit(unit, index ? textures.textures[*index].texture.id() : otherwise.id());
     };
     bind(kBaseUnit, surface.base_texture, textures.white);
     bind(kMetallicRoughnessUnit, surface.metallic_roughness_texture, textures.white);
     bind(kNormalUnit, surface.normal_texture, textures.flat);
     bind(kEmissiveUnit, surface.emissive_texture, textures.white);
+    bind(kAlphaUnit, surface.alpha_texture, textures.white);
+    const bool premultiplied =
+        surface.base_texture && textures.textures[*surface.base_texture].premultiplied;
+    setUniform(program, "base_premultiplied", premultiplied ? 1.0 : 0.0);
     setUniform(program, "part_color", surface.base_color);
     setUniform(program, "part_emission", surface.emissive);
     setUniform(program, "part_alpha", surface.alpha);

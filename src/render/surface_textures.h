@@ -11,9 +11,14 @@
 namespace ibl {
 
 struct SurfaceTextures {
-    std::vector<Texture> textures; ///< as Object::textures, with mip levels
-    Texture white, flat;           ///< in the place of a texture that a part does not have
-    /// Of the kinds of texture that any part has; CUT_OUTS, 0 or 1: alpha cuts out of some part.
+    struct Uploaded {
+        Texture texture; ///< with mip levels
+        bool premultiplied = false;
+    };
+    std::vector<Uploaded> textures; ///< as Object::textures
+    Texture white, flat;            ///< in the place of a texture that a part does not have
+    /// Of the kinds of texture that any part has; CUT_OUTS, 0 or 1: alpha says where some part
+    /// is.
     std::vector<std::string> definitions;
 };
 

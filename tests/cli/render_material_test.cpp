@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace ibl {
 namespace {
@@ -136,6 +138,54 @@ TEST(RenderMaterial, BaseTextureOfIntegersIsDecoded) {
             largest = std::max(largest, v);
         EXPECT_NEAR(largest, 0.5, 0.005) << object;
     }
+}
+
+// Alpha of a texture is how much of the object there is; through a sphere's holes its inside shows.
+TEST(RenderMaterial, BaseTexturesAlphaShowsWhatIsBehind) {
+    const Scratch scratch;
+    // A sphere on nothing: red, opaque in the middle.
+    render(scratch,
+           {"--probe", "builtin:furnace", "--background", "none", "--base-color", "0.5,0,0",
+            "--size", "64x64"},
+           "ball.exr");
+    const Image ball = readImage((scratch / "ball.exr").string(), {"", true}).image;
+    const Words words{"--probe",  "builtin:furnace", "--base-texture", "ball.exr",
+                      "--object", "plane",           "--eye",          "0,9,0",
+                      "--up",     "0,0,-1",          "--size",         "64x64"};
+    Words alone = words;
+    alone.insert(alone.end(), {"--background", "none", "--report", "r.json"});
+    const Image plane = render(scratch, alone);
+    EXPECT_EQ(readFile(scratch / "r.json").find("alpha channel is ignored"), std::string::npos);
+    double covered = 0, of_texture = 0;
+    for (std::size_t i = 0; i < plane.pixels.size(); i += 4) {
+        covered += plane.pixels[i + 3];
+        of_texture += ball.pixels[i + 3];
+        // Premultiplied, so red is half of alpha everywhere, the edge included.
+        ASSERT_NEAR(plane.pixels[i], 0.5 * plane.pixels[i + 3], 1e-5);
+        ASSERT_EQ(plane.pixels[i + 1], 0);
+    }
+    // The plane's side is sqrt 2, that of what is seen there 2 * 9 tan 20 degrees.
+    const double side = std::sqrt(2.0) / (18 * std::tan(std::numbers::pi / 9));
+    EXPECT_NEAR(covered / of_texture, side * side, 0.01);
+
+    // The sphere's front has the ball; through the back, which has nothing of it, the front shows.
+    Words sphere{"--probe", "builtin:furnace", "--background", "none", "--size", "33x33"};
+    const auto coverage = [](const Image& image) {
+        double sum = 0;
+        for (std::size_t i = 3; i < image.pixels.size(); i += 4)
+            sum += image.pixels[i];
+        return sum;
+    };
+    const double whole = coverage(render(scratch, sphere));
+    sphere.insert(sphere.end(), {"--base-texture", "ball.exr"});
+    const Image front = render(scratch, sphere);
+    sphere.insert(sphere.end(), {"--azimuth", "180"});
+    const Image back = render(scratch, sphere);
+    EXPECT_EQ(front.at(16, 16)[3], 1);
+    EXPECT_EQ(back.at(16, 16)[3], 1);
+    EXPECT_LT(coverage(front), whole - 2);
+    EXPECT_LT(coverage(back), 0.95 * whole);
+    EXPECT_GT(coverage(back), 0.5 * whole);
 }
 
 } // namespace

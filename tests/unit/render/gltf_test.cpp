@@ -131,10 +131,10 @@ void expectCode(float value, int code, bool is_color, const std::string& what) {
 
 // The square fills the frame: pixel i's centre is at x = (i + 0.5) / 9 - 1.
 constexpr int kSide = 18;
-Image draw(const Scene& scene) {
+Image draw(const Scene& scene, int samples = 1) {
     const double fov = 2 * std::atan(0.25) * 180 / std::numbers::pi;
     const Camera camera{{0, 0, 4}, {0, 0, 0}, {0, 1, 0}, fov};
-    return Renderer(softwareContext(), scene, {kSide, kSide, 1, {}}).render(camera);
+    return Renderer(softwareContext(), scene, {kSide, kSide, samples, {}}).render(camera);
 }
 
 TEST_F(Gltf, JpegImagesByViewDataAndFile) {
@@ -267,6 +267,39 @@ TEST_F(Gltf, NormalTextureGoesAlongTheCoordinates) {
                 << c.right << c.up << scale;
         }
     }
+}
+
+// Of a texture with alpha 64 on the left and 191 on the right, and a factor of 0.8.
+TEST_F(Gltf, AlphaMasksAndBlendsAsItsModeSays) {
+    const std::string png = "iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAYAAAD0In+KAAAAEElEQVR4nGP4"
+                            "//+/AxDvBwAf6gb6AEyXwAAAAABJRU5ErkJggg==";
+    Scene scene;
+    scene.background = NoBackground{};
+    scene.material.own =
+        ShaderText{"own.frag", "vec3 shade(vec3 normal, vec3 incident) { return normal; }"};
+    const auto alphas = [&](const std::string& mode, int samples) {
+        ObjectFile file =
+            read({R"({"pbrMetallicRoughness":{"baseColorFactor":[1,1,1,0.8],)"
+                  R"("baseColorTexture":{"index":0}})" +
+                      mode + "}",
+                  image("png", png, R"(,"sampler":0)") + R"(,"samplers":[{"wrapS":33071}])"});
+        EXPECT_TRUE(file.notes.empty());
+        scene.object = std::move(file.object);
+        const Image drawn = draw(scene, samples);
+        Imath::V2d sum(0);
+        for (int y = 0; y < kSide; ++y)
+            sum += Imath::V2d(drawn.at(2, y)[3], drawn.at(kSide - 3, y)[3]);
+        return sum / kSide;
+    };
+    const double left = 0.8 * 64 / 255, right = 0.8 * 191 / 255;
+    EXPECT_EQ(alphas("", 1), Imath::V2d(1, 1));
+    EXPECT_EQ(alphas(R"(,"alphaMode":"OPAQUE")", 1), Imath::V2d(1, 1));
+    EXPECT_EQ(alphas(R"(,"alphaMode":"MASK")", 1), Imath::V2d(0, 1)); // standard cutoff 0.5
+    EXPECT_EQ(alphas(R"(,"alphaMode":"MASK","alphaCutoff":0.1)", 1), Imath::V2d(1, 1));
+    EXPECT_EQ(alphas(R"(,"alphaMode":"MASK","alphaCutoff":0.7)", 1), Imath::V2d(0, 0));
+    const auto blended = alphas(R"(,"alphaMode":"BLEND")", 64);
+    EXPECT_NEAR(blended.x, left, 0.01);
+    EXPECT_NEAR(blended.y, right, 0.01);
 }
 
 // The texel of 0, 1 that stands at place i.

@@ -2,6 +2,7 @@
 #include "render/object_file.h"
 
 #include "core/error.h"
+#include "image/write.h"
 
 #include <gtest/gtest.h>
 
@@ -297,6 +298,41 @@ TEST_F(ObjectFiles, ObjMaterialsArePartsWithTheirColours) {
     write("m.mtl", "newmtl red\nmap_Kd none.png\nnewmtl blue\n");
     EXPECT_NE(refusal("a.obj", text).find("none.png"), std::string::npos);
     EXPECT_NE(refusal("b.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/3 2/3 3/3\n"), "");
+}
+
+// d, Tr (1 - d) and map_d, whose alpha counts if it has one, otherwise its first channel.
+TEST_F(ObjectFiles, ObjMaterialsDissolve) {
+    OutputSet outputs;
+    for (const int channels : {3, 4}) {
+        Image image(1, 1, channels);
+        const float values[] = {0.25F, 0.5F, 0.75F, 0.875F};
+        std::copy_n(values, channels, image.at(0, 0));
+        writeImage(outputs, folder_ + "/" + std::to_string(channels) + ".exr", image);
+    }
+    outputs.commit();
+    write("m.mtl", "newmtl whole\nKd 1 1 1\nmap_Kd 4.exr\nnewmtl half\nd 0.5\n"
+                   "newmtl most\nTr 0.25\nnewmtl first\nmap_d 3.exr\n"
+                   "newmtl alpha\nd 0.75\nmap_Kd 4.exr\nmap_d 4.exr\n");
+    std::string text = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\n";
+    for (const char* name : {"whole", "half", "most", "first", "alpha"})
+        text += std::string("usemtl ") + name + "\nf 1/1 2/1 3/1\n";
+    const ObjectFile file = read("a.obj", text);
+    ASSERT_EQ(file.object.parts.size(), 5u);
+    const double alphas[] = {1, 0.5, 0.75, 1, 0.75};
+    for (std::size_t i = 0; i < 5; ++i) {
+        const Surface& surface = file.object.parts[i].surface;
+        EXPECT_EQ(surface.alpha, alphas[i]) << i;
+        EXPECT_EQ(surface.alpha_cutoff, i == 0 ? 0 : kBlended) << i;
+        EXPECT_EQ(surface.alpha_texture.has_value(), i > 2) << i;
+    }
+    const auto texel = [&](std::size_t part) {
+        const Surface& surface = file.object.parts[part].surface;
+        return file.object.textures.at(surface.alpha_texture.value()).image.at(0, 0)[0];
+    };
+    EXPECT_EQ(texel(3), 0.25F);
+    EXPECT_EQ(texel(4), 0.875F);
+    EXPECT_EQ(file.object.parts[0].surface.base_texture, file.object.parts[4].surface.base_texture);
+    EXPECT_EQ(file.files.size(), 4u); // each once
 }
 
 } // namespace
