@@ -81,6 +81,7 @@ void defocus(const EglContext&, Image& picture, const Image& inverse_distance, c
     glBindTextureUnit(1, circle_texture.id());
     glBindTextureUnit(2, sum_texture.id());
     passes.draw(program, made);
+    glPixelStorei(GL_PACK_ROW_LENGTH, 0); // frames may leave theirs
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     glReadPixels(0, 0, width, height, picture.channels == 4 ? GL_RGBA : GL_RGB, GL_FLOAT,
                  picture.pixels.data());
