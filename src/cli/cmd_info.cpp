@@ -47,6 +47,7 @@ Json describe(const InfoOptions& options, const ProbeFile& file, const Census& c
     json["exposure"] = file.metadata.exposure;
     json["colour_correction"] = jsonOf(file.metadata.colour_correction);
     json["layout"] = layoutName(file.panorama.layout);
+    if (!file.metadata.layout.empty()) json["layout_label"] = file.metadata.layout;
     json["size"] = {file.panorama.image.width, file.panorama.image.height};
     json["minimum"] = jsonOf(census.min);
     json["maximum"] = jsonOf(census.max);
@@ -102,7 +103,8 @@ void print(const InfoOptions& options, const ProbeFile& file, const Census& cens
         line("colour corr.", triple(metadata.colour_correction) + ", divided out");
     }
     line("layout", std::string(layoutName(file.panorama.layout)) + ", " +
-                       std::to_string(image.width) + " x " + std::to_string(image.height));
+                       std::to_string(image.width) + " x " + std::to_string(image.height) +
+                       (metadata.layout.empty() ? "" : " (its label: " + metadata.layout + ")"));
     line("minimum", triple(census.min));
     line("maximum", triple(census.max));
     line("mean radiance", triple(census.mean));

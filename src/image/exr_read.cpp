@@ -268,6 +268,7 @@ void describe(const std::vector<Imf::Header>& parts, const ExrChoice& choice,
     file.format = "exr";
     file.compression = compressionName(header.compression());
     file.layers = exrLayers(parts);
+    file.layout = attribute<std::string>(header, "ibl.layout").value_or("");
     file.label = labelOf(header);
     if (Imf::hasEnvmap(header)) {
         file.envmap = Imf::envmap(header) == Imf::ENVMAP_CUBE ? "cube" : "latlong";

@@ -80,6 +80,7 @@ Imf::Header makeHeader(const Image& image, const WriteOptions& options, const st
         header.channels().insert(kChannels[c], Imf::Channel(type));
     for (const ExtraChannel& extra : options.extra)
         header.channels().insert(extra.name, Imf::Channel(Imf::FLOAT));
+    if (!options.layout.empty()) header.insert("ibl.layout", Imf::StringAttribute(options.layout));
     addLabel(header, options.label);
     if (options.envmap == "latlong") {
         Imf::addEnvmap(header, Imf::ENVMAP_LATLONG);

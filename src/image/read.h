@@ -29,6 +29,7 @@ struct ImageFile {
     std::string compression; ///< "zip", "dwaa", "rle", ...; "" where it does not apply
     std::string pixel_type;  ///< "half", "float", "uint", "rgbe", "uint8", "uint16", ...
     std::string envmap;      ///< OpenEXR's envmap attribute: "latlong", "cube" or "" (none)
+    std::string layout;      ///< OpenEXR's attribute ibl.layout, as written; "" (none)
     MapLabel label;          ///< of a convolved map in OpenEXR
     /// Products of a Radiance file's EXPOSURE and COLORCORR lines. The pixels are divided by them
     /// already.

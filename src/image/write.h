@@ -28,6 +28,7 @@ struct WriteOptions {
     std::string compression;
     bool smooth = false; ///< convolved: floats of which zip saves 3 % for a third of the time
     std::string envmap;  ///< OpenEXR's envmap attribute: "", "latlong" or "cube"
+    std::string layout;  ///< OpenEXR: that of a probe, in the attribute ibl.layout; "" is none
     MapLabel label;      ///< OpenEXR: of a convolved map
     std::string format;  ///< "exr", "hdr", "png", ... instead of what the name's extension says
     int threads = 0;     ///< for encoding; 0: as many as the machine has

@@ -177,14 +177,18 @@ std::optional<int> layoutSize(Layout layout, int width, int height) {
     return edge;
 }
 
+bool isLatlongShape(int width, int height) {
+    const long long w = width, h = height;
+    return std::abs(w - 2 * h) <= 2 && w > h;
+}
+
 Layout detectLayout(std::string_view subject, int width, int height, std::string_view envmap) {
     if (envmap == "latlong") return Layout::exrLatlong;
     if (envmap == "cube") {
         requireLayoutExtent(subject, Layout::exrCube, width, height);
         return Layout::exrCube;
     }
-    const long long w = width, h = height;
-    if (std::abs(w - 2 * h) <= 2 && w > h) return Layout::latlong;
+    if (isLatlongShape(width, height)) return Layout::latlong;
     for (Layout layout : {Layout::vcross, Layout::hcross, Layout::strip, Layout::vstrip}) {
         if (layoutSize(layout, width, height)) return layout;
     }

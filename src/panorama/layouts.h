@@ -35,10 +35,13 @@ V2i layoutExtent(Layout layout, int size);
 /// the layout cannot have it.
 std::optional<int> layoutSize(Layout layout, int width, int height);
 
+/// Whether an image of that extent has a lat-long's shape: |W - 2H| <= 2 and W > H.
+bool isLatlongShape(int width, int height);
+
 /// The layout of an image of which nothing but shape and metadata is known. The square maps
 /// are never told by their shape. `envmap` is the value
-/// of OpenEXR's attribute (latlong or cube), or empty. Otherwise |W - 2H| <= 2 and W > H is a
-/// lat-long, and shapes 3:4, 4:3, 6:1 and 1:6 with whole faces are vcross, hcross, strip and vstrip
+/// of OpenEXR's attribute (latlong or cube), or empty. Otherwise a lat-long's shape tells one, and
+/// shapes 3:4, 4:3, 6:1 and 1:6 with whole faces are vcross, hcross, strip and vstrip
 /// (whoever has the pixels should also see that a cross's cells outside its faces are blank:
 /// `crossCellsBlank`).
 /// Throws Error (input) naming `subject` when the shape tells nothing, or contradicts `envmap`.

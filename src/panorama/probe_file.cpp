@@ -45,6 +45,11 @@ ProbeFile readFaces(const std::string& path, const ReadProbeOptions& options) {
     for (const std::string& name : probeFileNames(path, Layout::faces)) {
         ImageFile file = readImage(name, {options.layer, false, options.threads});
         const int width = file.image.width, height = file.image.height;
+        if (!options.from && !file.layout.empty() && file.layout != layoutName(Layout::faces)) {
+            throw inputError(name, "is labelled " + file.layout +
+                                       ", and has a face's name; rename it, or tell the layout "
+                                       "(--from)");
+        }
         if (width != height) {
             throw inputError(name, std::to_string(width) + "x" + std::to_string(height) +
                                        " is no cube face; it must be square");
@@ -72,9 +77,31 @@ ProbeFile readFaces(const std::string& path, const ReadProbeOptions& options) {
     return probe;
 }
 
+/// The layout that the file's label says, if its shape allows that one: other programs hand labels
+/// on with whatever they have made of the pixels.
+Layout labelledLayout(const std::string& path, const ImageFile& file) {
+    const int width = file.image.width, height = file.image.height;
+    const std::optional<Layout> layout = layoutFromName(file.layout);
+    if (layout == Layout::faces) {
+        throw inputError(path, "is one of six faces by its label; give their name without _px, _nx "
+                               "..., or its layout (--from)");
+    }
+    const std::string told = "is labelled " + file.layout + ", which ";
+    if (!layout) throw inputError(path, told + "is no layout; name its layout (--from)");
+    const bool fits = layout == Layout::latlong ? isLatlongShape(width, height)
+                                                : layoutSize(*layout, width, height).has_value();
+    if (fits) return *layout;
+    throw inputError(path, told + std::to_string(width) + "x" + std::to_string(height) +
+                               " pixels cannot be; name its layout (--from)");
+}
+
 Layout layoutOf(const std::string& path, const ImageFile& file, const ReadProbeOptions& options) {
     const int width = file.image.width, height = file.image.height;
-    if (!options.from) return detectLayout(path, width, height, file.envmap);
+    if (!options.from) {
+        const bool labelled = file.envmap.empty() && !file.layout.empty();
+        return labelled ? labelledLayout(path, file)
+                        : detectLayout(path, width, height, file.envmap);
+    }
     if (*options.from == Layout::faces) {
         throw inputError(path, "is one file, not six faces; name a file whose _px _nx _py _ny _pz "
                                "_nz are there, or give its layout");
@@ -93,7 +120,9 @@ ProbeFile readOne(const std::string& path, const ReadProbeOptions& options) {
     probe.metadata = withoutPixels(std::move(file));
 
     const Layout layout = probe.panorama.layout;
-    if (!options.from && layout != Layout::latlong && probe.metadata.envmap.empty()) {
+    const bool by_shape =
+        !options.from && probe.metadata.envmap.empty() && probe.metadata.layout.empty();
+    if (by_shape && layout != Layout::latlong) {
         // Many a photograph is 4:3.
         if (!crossCellsBlank(probe.panorama)) {
             throw inputError(path,
@@ -133,9 +162,10 @@ ProbeFile readProbe(const std::string& path, const ReadProbeOptions& options) {
 
 WriteLosses writeProbe(OutputSet& outputs, const std::string& path, const Panorama& panorama,
                        const WriteOptions& options) {
-    WriteOptions with_envmap = options;
-    if (panorama.layout == Layout::exrLatlong) with_envmap.envmap = "latlong";
-    if (panorama.layout == Layout::exrCube) with_envmap.envmap = "cube";
+    WriteOptions how = options;
+    how.layout = layoutName(panorama.layout);
+    if (panorama.layout == Layout::exrLatlong) how.envmap = "latlong";
+    if (panorama.layout == Layout::exrCube) how.envmap = "cube";
     if (isCubeContainer(path, options)) {
         if (panorama.layout != Layout::faces) {
             throw Error(ExitCode::usage, path + ": .ktx2 and .dds hold faces, not " +
@@ -146,7 +176,7 @@ WriteLosses writeProbe(OutputSet& outputs, const std::string& path, const Panora
         return writeCubeMap(outputs, path, {&level, 1}, options);
     }
     if (panorama.layout != Layout::faces) {
-        return writeImage(outputs, path, panorama.image, with_envmap);
+        return writeImage(outputs, path, panorama.image, how);
     }
     if (path == "-") {
         throw Error(ExitCode::usage,
@@ -159,7 +189,7 @@ WriteLosses writeProbe(OutputSet& outputs, const std::string& path, const Panora
     for (const std::string& name : probeFileNames(path, Layout::faces)) {
         Image one(edge, edge);
         std::copy_n(image.row(face * edge), one.pixels.size(), one.pixels.begin());
-        losses += writeImage(outputs, name, one, with_envmap);
+        losses += writeImage(outputs, name, one, how);
         ++face;
     }
     return losses;

@@ -109,6 +109,102 @@ TEST(MapLabel, MapsOfAnotherKindAreRefused) {
     expectMapRefused(scratch, "--specular-map", "c.ktx2", "written but not read");
 }
 
+// Of square maps the shape says nothing.
+TEST(MapLabel, LayoutsAreReadBackAsTheyWereWritten) {
+    const Scratch scratch;
+    const auto info = [&](const std::string& name) {
+        return nlohmann::json::parse(runTool({"info", "--json", name}, scratch.path()).out);
+    };
+    for (const std::string layout :
+         {"latlong", "faces", "vcross", "hcross", "strip", "vstrip", "angular", "mirrorball",
+          "octahedral", "exr-latlong", "exr-cube"}) {
+        const std::string name = layout + ".exr";
+        make(scratch, {"convert", "builtin:compass", "--to", layout, "--size", "8", "-o", name});
+        EXPECT_EQ(info(name).at("layout"), layout);
+        EXPECT_EQ(info(name).at("layout_label"), layout);
+    }
+    make(scratch, {"convert", "builtin:compass", "--to", "angular", "--size", "8", "-o", "p.hdr"});
+    expectRefused(runTool({"info", "p.hdr"}, scratch.path()), 2, "no layout has the shape");
+    EXPECT_FALSE(info("builtin:sky").contains("layout_label"));
+    EXPECT_NE(runTool({"info", "angular.exr"}, scratch.path()).out.find("(its label: angular)"),
+              std::string::npos);
+}
+
+TEST(MapLabel, LayoutsOfMapsAreBelieved) {
+    const Scratch scratch;
+    const auto under = [&](const std::string& shader, const std::string& option,
+                           const std::string& map) {
+        return pictureOf(scratch, "render",
+                         {"--probe", "builtin:furnace", "--background", "none", "--size", "32x32",
+                          "--samples", "1", "--shader", shader, option, map},
+                         "p.exr");
+    };
+    const auto difference = [](const Image& a, const Image& b) {
+        double largest = 0, sum = 0, squares = 0;
+        for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+            largest = std::max(largest, std::abs(double(a.pixels[i]) - b.pixels[i]));
+            sum += std::abs(b.pixels[i]);
+            squares += 1;
+        }
+        return largest / (sum / squares);
+    };
+    const auto maps = [&](const std::string& command, const std::string& to, const Words& more) {
+        Words words{command, "builtin:sky", "--to", to, "--size", "128", "-o", to + ".exr"};
+        words.insert(words.end(), more.begin(), more.end());
+        make(scratch, words);
+        return to + ".exr";
+    };
+    const Image latlong = under("diffuse", "--diffuse-map", maps("diffuse", "latlong", {}));
+    const Words chain{"--levels", "4"};
+    const Image glossy = under("ggx", "--specular-map", maps("specular", "latlong", chain));
+    for (const std::string layout : {"angular", "mirrorball", "octahedral"}) {
+        EXPECT_LT(
+            difference(under("diffuse", "--diffuse-map", maps("diffuse", layout, {})), latlong),
+            0.02)
+            << layout;
+        EXPECT_LT(
+            difference(under("ggx", "--specular-map", maps("specular", layout, chain)), glossy),
+            0.05)
+            << layout;
+    }
+}
+
+TEST(MapLabel, LayoutsThatAreContradictedAreRefused) {
+    const Scratch scratch;
+    const auto refused = [&](const Words& words, const std::string& said) {
+        expectRefused(runTool(words, scratch.path()), 2, said);
+    };
+    const auto rename = [&](const char* from, const char* to) {
+        fs::rename(scratch / from, scratch / to);
+    };
+    make(scratch, {"convert", "builtin:sky", "--to", "angular", "--size", "8", "-o", "a.exr"});
+    // What another program makes of it keeps the label.
+    const auto resized = [&](const std::string& size, const std::string& out) {
+        EXPECT_EQ(runProgram({"oiiotool", "a.exr", "--resize", size, "-o", out}, scratch.path())
+                      .exit_code,
+                  0);
+    };
+    resized("16x8", "wide.exr");
+    refused({"info", "wide.exr"}, "wide.exr: is labelled angular, which 16x8 pixels cannot be");
+    EXPECT_EQ(runTool({"info", "wide.exr", "--from", "latlong"}, scratch.path()).exit_code, 0);
+    make(scratch, {"convert", "builtin:sky", "--to", "latlong", "--size", "8", "-o", "l.exr"});
+    EXPECT_EQ(runProgram({"oiiotool", "l.exr", "--resize", "8x8", "-o", "s.exr"}, scratch.path())
+                  .exit_code,
+              0);
+    refused({"info", "s.exr"}, "is labelled latlong");
+    EXPECT_EQ(runProgram({"oiiotool", "l.exr", "--attrib", "ibl.layout", "globe", "-o", "g.exr"},
+                         scratch.path())
+                  .exit_code,
+              0);
+    refused({"info", "g.exr"}, "is labelled globe, which is no layout");
+
+    make(scratch, {"convert", "builtin:sky", "--size", "8", "-o", "f.exr"});
+    refused({"info", "f_px.exr"}, "is one of six faces");
+    rename("a.exr", "f_nz.exr");
+    refused({"info", "f.exr"}, "f_nz.exr: is labelled angular");
+    EXPECT_EQ(runTool({"info", "f.exr", "--from", "faces"}, scratch.path()).exit_code, 0);
+}
+
 // Radiance files hold no label: their levels are counted by their files.
 TEST(MapLabel, MapsWithoutOneAreTakenAsTheyAre) {
     const Scratch scratch;

@@ -24,6 +24,13 @@ void write(const std::string& path, const Panorama& p, const WriteOptions& optio
     outputs.commit();
 }
 
+/// One image as another program writes it: nothing says its layout.
+void writeUnlabelled(const std::string& path, const Image& image) {
+    OutputSet outputs;
+    writeImage(outputs, path, image);
+    outputs.commit();
+}
+
 void expectRefused(const std::string& path, std::optional<Layout> from, const std::string& about) {
     try {
         readProbe(path, {from, "", 1});
@@ -50,15 +57,33 @@ TEST(ProbeFile, EveryLayoutComesBackAsWritten) {
         Panorama p = noise(layout, e.x, e.y, 31);
         const std::string path = folder.file(std::string(layoutName(layout)) + ".exr");
         write(path, p);
-        ReadProbeOptions told; // the shape does not tell square maps
-        if (isSquareMap(layout)) told.from = layout;
-        const ProbeFile file = readProbe(path, told); // crosses: their blank cells are 0
+        const ProbeFile file = readProbe(path); // crosses: their blank cells are 0
+        EXPECT_TRUE(file.notes.empty());
+        EXPECT_EQ(file.metadata.layout, layoutName(layout));
         EXPECT_EQ(file.panorama.layout, layout) << layoutName(layout);
         ASSERT_EQ(file.panorama.image.pixels.size(), p.image.pixels.size());
         EXPECT_EQ(test::largestDifference(file.panorama.image, p.image), 0);
         EXPECT_EQ(file.files, probeFileNames(path, layout));
         EXPECT_EQ(file.metadata.format, "exr");
         EXPECT_TRUE(file.metadata.image.pixels.empty());
+    }
+}
+
+TEST(ProbeFile, ShapesTellLayoutsThatAreNotLabelled) {
+    const ScratchFolder folder;
+    const std::string path = folder.file("p.exr");
+    for (Layout layout : test::kAllLayouts) {
+        if (layout == Layout::faces) continue;
+        const V2i e = layoutExtent(layout, 8);
+        const Panorama p = noise(layout, e.x, e.y, 31);
+        writeUnlabelled(path, p.image);
+        const bool by_border = layout == Layout::exrLatlong || layout == Layout::exrCube;
+        if (isSquareMap(layout)) {
+            expectRefused(path, std::nullopt, "no layout has the shape");
+        } else if (!by_border) {
+            EXPECT_EQ(readProbe(path).panorama.layout, layout);
+        }
+        EXPECT_EQ(readProbe(path, {layout, "", 1}).panorama.layout, layout);
     }
 }
 
@@ -104,24 +129,26 @@ TEST(ProbeFile, FacesMustBeSixSquaresOfOneSize) {
     write(path, noise(Layout::faces, 8, 48, 35));
     std::filesystem::remove(folder.file("p_ny.exr"));
     expectRefused(path, std::nullopt, "p_ny.exr");
-    write(folder.file("p_ny.exr"), noise(Layout::latlong, 8, 4, 36));
+    writeUnlabelled(folder.file("p_ny.exr"), noise(Layout::latlong, 8, 4, 36).image);
     expectRefused(path, std::nullopt, "p_ny.exr");
-    write(folder.file("p_ny.exr"), noise(Layout::latlong, 4, 4, 36));
+    writeUnlabelled(folder.file("p_ny.exr"), noise(Layout::latlong, 4, 4, 36).image);
     expectRefused(path, std::nullopt, "one size");
+    write(folder.file("p_ny.exr"), noise(Layout::latlong, 8, 8, 36));
+    expectRefused(path, std::nullopt, "labelled latlong");
     expectRefused(folder.file("q.exr"), std::nullopt, "q.exr");
 }
 
 TEST(ProbeFile, WrongShapesAreRefusedUnlessNamed) {
     const ScratchFolder folder;
     const std::string path = folder.file("p.exr");
-    write(path, noise(Layout::latlong, 1, 1, 37));
+    writeUnlabelled(path, noise(Layout::latlong, 1, 1, 37).image);
     expectRefused(path, std::nullopt, "1x1");
     EXPECT_EQ(readProbe(path, {Layout::latlong, "", 1}).panorama.image.width, 1);
-    write(path, noise(Layout::latlong, 64, 64, 37));
+    writeUnlabelled(path, noise(Layout::latlong, 64, 64, 37).image);
     expectRefused(path, std::nullopt, "64x64");
     expectRefused(path, Layout::hcross, "hcross");
     // 4:3, but a picture to its corners: a photograph, not a cross.
-    write(path, noise(Layout::latlong, 64, 48, 37));
+    writeUnlabelled(path, noise(Layout::latlong, 64, 48, 37).image);
     expectRefused(path, std::nullopt, "hcross");
     EXPECT_EQ(readProbe(path, {Layout::hcross, "", 1}).panorama.layout, Layout::hcross);
 }
