@@ -174,8 +174,8 @@ TEST(Effects, BloomIsASumOfGaussians) {
     expectNear(lampScene(150, 101), 0.1, 2, 0.015, 0.08);
 }
 
-// A kernel that ends at the edges of a square shows them about a sun: in black, what falls to 1e-9 of
-// the sun is still seen.
+// A kernel that ends at the edges of a square shows them about a sun: in black, what falls to 1e-9
+// of the sun is still seen.
 TEST(Effects, BloomOfASunIsRoundDownToTheDark) {
     const int size = 301, middle = 150;
     for (const double radius : {0.02, 0.04}) {
