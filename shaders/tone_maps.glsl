@@ -13,20 +13,23 @@ float scurveCurve(float x) {
     return x > 0.0 ? 1.0 / (1.0 + pow(parameters[1] / x, parameters[0])) : 0.0;
 }
 
-// x (1 + x / white^2) / (1 + x), so written that x^2 cannot overflow.
+// x (1 + x / white^2) / (1 + x), so written that x^2 cannot overflow and that rounding does not make
+// more light darker.
 float reinhardCurve(float x) {
-    float compressed = x / (1.0 + x);
+    float compressed = x < 1.0 ? x / (1.0 + x) : 1.0 - 1.0 / (1.0 + x);
     return compressed * (1.0 + x / (parameters[0] * parameters[0]));
 }
 
 // Hable's f(x) = (x (A x + C B) + D E) / (x (A x + B) + D F) - E / F with A = 0.15, B = 0.5, C = 0.1,
 // D = 0.2, E = 0.02, F = 0.3, on one denominator, so that nothing cancels next to 0:
-// x (A (1 - E/F) x + B (C - E/F)) / (x (A x + B) + D F).
+// x (A (1 - E/F) x + B (C - E/F)) / (x (A x + B) + D F);
+// and where it flattens as what it lacks of its limit.
 float hable(float x) {
     const float A = 0.15, B = 0.5, C = 0.1, D = 0.2, E = 0.02, F = 0.3;
-    float up = A * (1.0 - E / F), down = B * (C - E / F);
-    return x < 1.0 ? x * (up * x + down) / (x * (A * x + B) + D * F)
-                   : (up + down / x) / (A + (B + D * F / x) / x);
+    const float limit = 1.0 - E / F, low = B * (C - E / F);
+    if (x < 1.0) return x * (A * limit * x + low) / (x * (A * x + B) + D * F);
+    float w = 1.0 / x;
+    return limit - w * (B * limit - low + w * D * F * limit) / (A + w * (B + w * D * F));
 }
 float filmicCurve(float x) { return hable(2.0 * x) / hable(parameters[0]); }
 
@@ -56,6 +59,7 @@ vec3 perChannel(vec3 c) {
 
 vec3 perLuminance(vec3 c) {
     c = clamp(c, 0.0, 1e30);
+    if (c.r == c.g && c.g == c.b) return vec3(CURVE(c.r)); // no rounding but the curve's
     float x = luminance(c);
     return x > 0.0 ? c * (CURVE(x) / x) : vec3(0.0);
 }

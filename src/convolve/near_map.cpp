@@ -71,18 +71,30 @@ Move moveOnSquare(const MapExtent& map, int x, int y, int probe_width) {
     return move;
 }
 
+/// On lat-longs: to the northern half of the columns that lie alike between the probe's, of which
+/// every second one mirrors another. By the border rule the last column is the first again.
+Move moveOnLatlong(const MapExtent& map, int x, int y, int probe_width) {
+    const int border = map.layout == Layout::exrLatlong ? 1 : 0;
+    const int around = std::max(1, map.width - border), turns = std::gcd(around, probe_width);
+    const int alike = around / turns, turn = probe_width / turns;
+    Move move{x % alike, y};
+    move.turn = x / alike * turn;
+    const int mirror = alike - 1 + border - move.x;
+    if (mirror < move.x) {
+        move.x = mirror;
+        move.reflect_psi = true;
+        move.turn += turn;
+    }
+    move.reflect_theta = 2 * y >= map.height + 1;
+    if (move.reflect_theta) move.y = map.height - 1 - y;
+    return move;
+}
+
 Move moveOf(const MapExtent& map, int x, int y, int probe_width) {
     if (map.layout == Layout::faces) return moveOnFaces(map, x, y, probe_width);
     if (isSquareMap(map.layout)) return moveOnSquare(map, x, y, probe_width);
-    Move move{x, y};
-    if (map.layout == Layout::latlong) {
-        const int turns = std::gcd(map.width, probe_width);
-        move.x = x % (map.width / turns);
-        move.turn = x / (map.width / turns) * (probe_width / turns);
-        move.reflect_theta = 2 * y >= map.height + 1;
-        if (move.reflect_theta) move.y = map.height - 1 - y;
-    }
-    return move;
+    if (map.layout == Layout::exrCube) return {x, y};
+    return moveOnLatlong(map, x, y, probe_width);
 }
 
 /// The weighted sum of pixels for a texel.

@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <optional>
 #include <string>
@@ -321,6 +322,21 @@ PrefilterResult byMethod(const Engine& engine, const PrefilterRequest& request,
     }
 }
 
+/// Narrow lobes' near pixels have an error that no band limit makes less: told before the work.
+void requireReachable(std::span<const Plan> plans, double max_error) {
+    const double least = nearRules(max_error).error;
+    const auto narrow = [](const LobePlan& lobe) { return lobe.method == Method::narrow; };
+    const bool any = std::ranges::any_of(
+        plans, [&](const Plan& plan) { return std::ranges::any_of(plan.lobes, narrow); });
+    if (!any || least < max_error) return;
+    char text[160];
+    std::snprintf(text, sizeof text,
+                  "error: %g cannot be met: of lobes as narrow as this the bound of the relative "
+                  "RMSE is %g at least; allow a larger error",
+                  max_error, least);
+    throw Error(ExitCode::accuracy, text);
+}
+
 } // namespace
 
 PrefilterOptions optionsFor(Quality quality, int threads) {
@@ -352,8 +368,10 @@ std::vector<PrefilterResult> prefilter(const Panorama& latlong,
         }
         return results;
     }
-    for (const Plan& plan :
-         makePlans(statistics, requests, options.max_error, latlong.image.width, options.threads)) {
+    const std::vector<Plan> plans =
+        makePlans(statistics, requests, options.max_error, latlong.image.width, options.threads);
+    requireReachable(plans, options.max_error);
+    for (const Plan& plan : plans) {
         const Engine engine = analyseProbe(latlong, statistics, plan, options);
         for (std::size_t k = 0; k < plan.lobes.size(); ++k) {
             const PrefilterRequest& request = requests[plan.requests[k]];

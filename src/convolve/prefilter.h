@@ -72,7 +72,8 @@ struct PrefilterResult {
 /// is the lobe-weighted mean about its centre's direction, so a constant probe L gives L; where the
 /// lobe is narrower than about two texels it is the mean of that over the texel's footprint, and
 /// for roughness 0 the area-filtered probe. Results stand in the order of the requests. Throws
-/// Error on a lobe parameter or a size out of range.
+/// Error on a lobe parameter or a size out of range, and where max_error is less than a narrow
+/// lobe's least.
 std::vector<PrefilterResult> prefilter(const Panorama& latlong,
                                        std::span<const PrefilterRequest> requests,
                                        const PrefilterOptions& options);

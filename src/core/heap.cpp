@@ -15,8 +15,8 @@ void keepHeap() {
     constexpr int kMore = 1 << 30;
     constexpr int kOwnMapping = 256 << 20; // larger blocks are mappings of their own, as ever
     constexpr std::uintptr_t kLargePage = 2 << 20;
-    mallopt(M_TRIM_THRESHOLD, kMore); // or the block's end would be given back at once
-    mallopt(M_MMAP_THRESHOLD, kMore); // or it would be no part of the heap
+    mallopt(M_TRIM_THRESHOLD, kMore);       // or the block's end would be given back at once
+    mallopt(M_MMAP_THRESHOLD, kMore);       // or it would be no part of the heap
     if (void* block = std::malloc(kKept)) { // address space only: no page of it is touched
         const auto begin =
             (reinterpret_cast<std::uintptr_t>(block) + kLargePage - 1) / kLargePage * kLargePage;

@@ -53,18 +53,20 @@ std::pair<int, int> readRange(int begin, int end, int n, int m) {
             std::min(n, static_cast<int>(std::ceil((end + 0.5) * ratio)) + 1)};
 }
 
-Target gauss(Passes& passes, const Target& picture, const V2d& deviation) {
+/// A Gaussian along an axis, times `weight`.
+const Program& gaussAlong(Passes& passes, const V2i& axis, double deviation, double weight,
+                          const Texture& picture) {
     const Program& program = passes.program({"resize.glsl", "gauss.frag"});
-    setUniform(program, "deviation", deviation.x);
-    Target across = makeTarget(picture.size, GL_RGBA32F);
-    setUniform(program, "axis", V2i(1, 0));
-    glBindTextureUnit(0, picture.texture.id());
-    passes.draw(program, across);
+    setUniform(program, "axis", axis);
+    setUniform(program, "deviation", deviation);
+    setUniform(program, "weight", weight);
+    glBindTextureUnit(0, picture.id());
+    return program;
+}
+
+Target gaussAcross(Passes& passes, const Target& picture, double deviation) {
     Target made = makeTarget(picture.size, GL_RGBA32F);
-    setUniform(program, "deviation", deviation.y);
-    setUniform(program, "axis", V2i(0, 1));
-    glBindTextureUnit(0, across.texture.id());
-    passes.draw(program, made);
+    passes.draw(gaussAlong(passes, kAcross, deviation, 1, picture.texture), made);
     return made;
 }
 
@@ -129,23 +131,28 @@ void addLevels(Passes& passes, Target base, std::span<const double> weights, Tar
     levels.push_back(std::move(base));
     while (levels.size() < weights.size())
         levels.push_back(halved(passes, levels.back()));
-    const Program& smooth = passes.program({"resize.glsl", "smooth.glsl", "smooth.frag"});
+    const auto lay = [&](const Program& program, std::size_t l) {
+        l == 0 && sum.texture ? passes.add(program, sum) : passes.draw(program, levels[l]);
+    };
+    // The coarsest level's edge is seen, where nothing wider covers it.
+    const std::size_t last = levels.size() - 1;
+    const Target across = gaussAcross(passes, levels[last], 1);
+    lay(gaussAlong(passes, kDown, 1, weights[last], across.texture), last);
     // A level, once smoothed across, makes room for what goes on upwards.
-    for (std::size_t l = levels.size(); l-- > 0;) {
-        const Target& own = levels[l];
-        const Target* coarse = l + 1 < levels.size() ? &levels[l + 1] : nullptr;
+    const Program& smooth = passes.program({"resize.glsl", "smooth.glsl", "smooth.frag"});
+    for (std::size_t l = last; l-- > 0;) {
+        const Target &own = levels[l], &coarse = levels[l + 1];
         const Target& scratch = passes.scratch(own.size);
         glBindTextureUnit(0, own.texture.id());
         passes.draw(smooth, scratch.framebuffer, {{0, 0}, own.size});
-        const bool even = coarse && own.size == 2 * coarse->size;
-        const Program& enlarge =
-            passes.program({"resize.glsl", "smooth.glsl", "enlarge.frag"},
-                           {coarse ? "COARSEST 0" : "COARSEST 1", even ? "EVEN 1" : "EVEN 0"});
+        const bool even = own.size == 2 * coarse.size;
+        const Program& enlarge = passes.program({"resize.glsl", "smooth.glsl", "enlarge.frag"},
+                                                {even ? "EVEN 1" : "EVEN 0"});
         setUniform(enlarge, "size", own.size);
         setUniform(enlarge, "own_weight", weights[l]);
         glBindTextureUnit(0, scratch.texture.id());
-        if (coarse) glBindTextureUnit(1, coarse->texture.id());
-        l == 0 && sum.texture ? passes.add(enlarge, sum) : passes.draw(enlarge, own);
+        glBindTextureUnit(1, coarse.texture.id());
+        lay(enlarge, l);
     }
     if (!sum.texture) sum = std::move(levels[0]);
 }
@@ -165,7 +172,10 @@ Target blurred(Passes& passes, const Target& base, const V2i& frame, double devi
     }
     const V2d rest = progress.rest(deviation);
     const auto root = [](double square) { return std::sqrt(std::max(square, 1e-6)); };
-    return gauss(passes, *picture, {root(rest.x), root(rest.y)});
+    const Target across = gaussAcross(passes, *picture, root(rest.x));
+    Target made = makeTarget(picture->size, GL_RGBA32F);
+    passes.draw(gaussAlong(passes, kDown, root(rest.y), 1, across.texture), made);
+    return made;
 }
 
 } // namespace ibl

@@ -6,6 +6,9 @@
 // ahead of its way up: level l enlarged again is the picture blurred by very nearly a Gaussian, of
 // the variance
 //     2 * 3/4 (1 + 4 + ... + 4^(l-1)) + 4^l = 3/2 4^l - 1/2.
+// The coarsest level is smoothed by a Gaussian of that variance in place of 1 4 6 4 1 / 16, which
+// ends at the edges of a square: within a factor of 1e9, from a sun to what is black, they would be
+// seen.
 #pragma once
 
 #include "render/frame_tiles.h"

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <fstream>
 #include <map>
@@ -292,6 +293,19 @@ TEST(Diffuse, MaxErrorIsKeptOrRefused) {
     const auto map =
         nlohmann::json::parse(readFile(scratch / "r.json")).at("results").at("maps")[0];
     EXPECT_LE(map.at("error_estimate").get<double>(), 1e-5);
+}
+
+TEST(Specular, WhatNarrowLobesCannotKeepIsRefusedBeforeTheWork) {
+    const Scratch scratch;
+    const auto start = std::chrono::steady_clock::now();
+    const ToolResult result =
+        runTool({"specular", "builtin:sky", "--roughness", "0.02", "--to", "exr-latlong", "--size",
+                 "256", "--max-error", "1e-6", "-o", "s.exr"}, // minutes of work
+                scratch.path());
+    EXPECT_EQ(result.exit_code, 5);
+    EXPECT_NE(result.err.find("1e-06 cannot be met"), std::string::npos) << result.err;
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(30));
+    EXPECT_TRUE(scratch.names().empty());
 }
 
 } // namespace

@@ -174,6 +174,25 @@ TEST(Effects, BloomIsASumOfGaussians) {
     expectNear(lampScene(150, 101), 0.1, 2, 0.015, 0.08);
 }
 
+// A kernel that ends at the edges of a square shows them about a sun: in black, what falls to 1e-9
+// of the sun is still seen.
+TEST(Effects, BloomOfASunIsRoundDownToTheDark) {
+    const int size = 301, middle = 150;
+    for (const double radius : {0.02, 0.04}) {
+        DisplayOptions options = spreading(kSpreads[0].second, 0.5);
+        options.bloom_radius = radius;
+        const Image seen = shown(options, lonePixel(size, size, middle, middle, 1e9F));
+        const auto reach = [&](int x, int y) { // pixels until it is below 1
+            int k = 0;
+            while (middle + k < size && seen.at(middle + k * x, middle + k * y)[1] > 1)
+                ++k;
+            return k * std::hypot(x, y);
+        };
+        for (const auto& [x, y] : {std::pair(1, 0), {0, 1}, {-1, 0}, {0, -1}})
+            EXPECT_NEAR(reach(x, y) / reach(1, 1), 1, 0.12) << x << " " << y << " " << radius;
+    }
+}
+
 TEST(Effects, EachMixesLinearlyWithItsWeight) {
     Image picture = noiseProbe(Layout::latlong, 70, 41).image;
     for (int c = 0; c < 3; ++c)
