@@ -165,6 +165,18 @@ void noteNotFinite(Session& session, const std::string& shader, std::size_t coun
                      " NaN or infinite; written as 0 and as the largest number that fits");
 }
 
+void noteUnset(Session& session, const std::string& shader, const std::vector<std::string>& names) {
+    if (names.empty()) return;
+    std::string list;
+    for (const std::string& name : names)
+        list += (list.empty() ? "" : ", ") + name;
+    const bool one = names.size() == 1;
+    session.note("--shader " + shader,
+                 (one ? "no option sets its uniform " : "no options set its uniforms ") + list +
+                     (one ? "; it stays" : "; they stay") +
+                     " as declared, 0 where nothing is said");
+}
+
 Frame drawFrame(Session& session, const RenderOptions& options, const FramePlace& place,
                 Drawing& drawing, Image spare = {}) {
     const bool changed = loadScene(session, options, drawing.frame, place, drawing.loaded);
@@ -317,6 +329,7 @@ void runRender(const RenderOptions& options) {
         });
     }
     noteNotFinite(session, options.material.shader, drawing.bad_pixels);
+    noteUnset(session, options.material.shader, drawing.renderer->unsetUniforms());
     session.finish();
 }
 

@@ -298,6 +298,11 @@ LightCounts Renderer::lightCounts() const {
     return state_->lighting ? state_->lighting->counts() : LightCounts{};
 }
 
+std::vector<std::string> Renderer::unsetUniforms() const {
+    const std::optional<ShaderText>& own = state_->material.own;
+    return own ? ibl::unsetUniforms(state_->surface, *own) : std::vector<std::string>();
+}
+
 FrameAovs Renderer::renderAovs(const Camera& camera) {
     const int width = state_->options.width, height = state_->options.height;
     const std::size_t pixels = static_cast<std::size_t>(width) * height;

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace ibl {
@@ -64,6 +65,9 @@ public:
     LightCounts lightCounts() const;
 
     FrameAovs renderAovs(const Camera& camera);
+
+    /// The uniforms of a user's own shader that nothing sets, in alphabetical order.
+    std::vector<std::string> unsetUniforms() const;
 
 private:
     struct State;

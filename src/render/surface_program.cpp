@@ -2,8 +2,28 @@
 
 #include "render/uniforms.h"
 
+#include <algorithm>
+#include <array>
+
 namespace ibl {
 namespace {
+
+/// Set whoever declares them.
+constexpr std::array<std::string_view, 5> kAlwaysSet{"eye", "clip_from_world", "clip_from_object",
+                                                     "world_from_object", "object_extent"};
+/// Bound if the program has the functions that read them.
+constexpr std::array<std::string_view, 4> kMaps{"specular_levels", "split_sum", "probe_levels",
+                                                "far_side"};
+
+/// Whether a declaration of uniforms in the text has the name.
+bool declaresUniform(std::string_view text, std::string_view name) {
+    constexpr std::string_view keyword = "uniform";
+    for (std::size_t at = text.find(keyword); at != text.npos; at = text.find(keyword, at + 1)) {
+        const std::string_view declaration = text.substr(at, text.find(';', at) - at);
+        if (mentions(declaration, keyword) && mentions(declaration, name)) return true;
+    }
+    return false;
+}
 
 bool ownMentions(const Material& material, std::string_view identifier) {
     return material.own && mentions(material.own->text, identifier);
@@ -143,6 +163,31 @@ void setMaterial(const Program& program, const Material& material) {
             setUniform(program, uniform.c_str(), value.x);
         }
     }
+}
+
+std::vector<std::string> unsetUniforms(const Program& program, const ShaderText& own) {
+    const auto isSet = [](std::string_view name) {
+        return std::ranges::count(kAlwaysSet, name) + std::ranges::count(kMaps, name) > 0 ||
+               std::ranges::any_of(parameterTable(), [&](const ParameterInfo& info) {
+                   return uniformName(info.parameter) == name;
+               });
+    };
+    std::vector<std::string> unset;
+    GLint count = 0;
+    glGetProgramiv(program.id(), GL_ACTIVE_UNIFORMS, &count);
+    for (GLint i = 0; i < count; ++i) {
+        std::array<char, 256> text{};
+        GLint size = 0;
+        GLenum type = 0;
+        glGetActiveUniform(program.id(), static_cast<GLuint>(i), text.size(), nullptr, &size, &type,
+                           text.data());
+        std::string name(text.data());
+        name.resize(std::min(name.find_first_of("[."), name.size())); // of an array, a structure
+        const bool known = std::ranges::count(unset, name) > 0;
+        if (!known && !isSet(name) && declaresUniform(own.text, name)) unset.push_back(name);
+    }
+    std::ranges::sort(unset);
+    return unset;
 }
 
 } // namespace ibl

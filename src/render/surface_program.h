@@ -25,4 +25,8 @@ ProgramParts farSideParts(const SurfaceKind& kind, std::vector<std::string> defi
 /// The uniforms of all parameters that the program has.
 void setMaterial(const Program& program, const Material& material);
 
+/// The uniforms that a user's own text declares, that the program has and that nothing sets, in
+/// alphabetical order.
+std::vector<std::string> unsetUniforms(const Program& program, const ShaderText& own);
+
 } // namespace ibl

@@ -121,6 +121,44 @@ TEST(RenderMaterial, OwnShaders) {
     refused({"--shader", "open.frag"}, 2, "open.frag:3: ");
 }
 
+TEST(RenderMaterial, OwnUniformsThatNothingSetsAreNamed) {
+    const Scratch scratch;
+    const auto said = [&](const std::string& declarations, const std::string& color,
+                          const Words& more = {"-o", "o.exr"}) {
+        writeFile(scratch / "own.frag", declarations +
+                                            "\nvec3 shade(vec3 normal, vec3 incident) {\n"
+                                            "    return " +
+                                            color + ";\n}\n");
+        Words words{"render",    "--probe", "builtin:furnace", "--shader", "own.frag",
+                    "--size",    "8x8",     "--samples",       "1",        "--object",
+                    "octahedron"};
+        words.insert(words.end(), more.begin(), more.end());
+        const ToolResult result = runTool(words, scratch.path());
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+        return result.err;
+    };
+    EXPECT_EQ(said("uniform float glow;", "vec3(glow)"),
+              "ibltool: --shader own.frag: no option sets its uniform glow; it stays as declared, "
+              "0 where nothing is said\n");
+    EXPECT_EQ(
+        said("uniform float warm = 2.0, cold[3];\nlayout(binding = 3) uniform sampler2D film;",
+             "texture(film, normal.xy).rgb * warm + cold[1]"),
+        "ibltool: --shader own.frag: no options set its uniforms cold, film, warm; they stay "
+        "as declared, 0 where nothing is said\n");
+    // What is documented, what the program itself has, and what the compiler leaves out.
+    EXPECT_EQ(said("uniform float roughness, metallic, ior;\nuniform vec3 ior_rgb, eye;\n"
+                   "uniform float unused;",
+                   "base_color + part_color + vec3(roughness + metallic + ior + part_id) + ior_rgb "
+                   "+ eye + fresnel + specularRadiance(normal, 0.5) + probeRadiance(normal) + "
+                   "throughObject(normal, incident, 1.5)",
+                   {"--roughness", "0.5", "-o", "o.exr"}),
+              "");
+    // Once, however many frames.
+    const std::string frames =
+        said("uniform vec3 glow;", "glow", {"--frames", "1-3", "--yaw", "0..9", "-o", "o%d.exr"});
+    EXPECT_EQ(frames.find("glow"), frames.rfind("glow"));
+}
+
 TEST(RenderMaterial, BaseTextureOfIntegersIsDecoded) {
     const Scratch scratch;
     // All linear 0.5: a background, and a camera that sees nothing else.
