@@ -3,6 +3,7 @@
 // the tool.
 #include "convolve/prefilter.h"
 #include "convolve/split_sum.h"
+#include "core/heap.h"
 #include "image/read.h"
 #include "render/renderer.h"
 
@@ -47,6 +48,7 @@ int main(int argc, char** argv) {
         std::fprintf(stderr, "rasteriser_bench PROBE FRAMES SAMPLES\n");
         return 1;
     }
+    ibl::keepHeap(); // as the tool does
     try {
         ibl::drawFrames(argv[1], std::atoi(argv[2]), {1920, 1080, std::atoi(argv[3]), {}, 0});
     } catch (const std::exception& problem) {
