@@ -12,7 +12,28 @@
 
 #include "lights/light_harmonics.h"
 
+#include <span>
+#include <vector>
+
 namespace ibl {
+
+/// What |f_lm|^2 counts in the squared irradiance over all normals.
+struct IrradianceWeights {
+    int degree;
+    double first;             ///< of l = 1
+    std::vector<double> even; ///< of l = 0, 2, ... degree
+};
+
+/// A_l^2. `endless`: the upper quarter also stands for what lies beyond the degree, see
+/// irradianceError().
+IrradianceWeights irradianceWeights(int degree, bool endless);
+
+/// Sum of the weights times |f_lm|^2, over all three channels.
+double irradiancePower(const LightHarmonics& harmonics, const IrradianceWeights& weights);
+
+/// The same of a few lights: by the addition theorem sum_m Y_lm(a) conj(Y_lm(b)) is
+/// (2l + 1) / (4 pi) P_l(a . b), so it is a sum over pairs of lights.
+double irradiancePower(std::span<const Light> lights, const IrradianceWeights& weights);
 
 /// Relative RMSE over all normals and channels of an irradiance whose difference from the probe's
 /// has the coefficients `difference`, up to the same degree. Beyond that degree a difference of

@@ -7,6 +7,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <functional>
+
 namespace ibl {
 namespace {
 
@@ -112,22 +115,57 @@ TEST(IrradianceError, OfALightThatIsTheProbe) {
     EXPECT_EQ(lightsOfProbe(filled(8, 4, 0.f), LightMethod::median, 4).irradiance_error, 0);
 }
 
+TEST(IrradiancePower, OfAFewLightsIsThatOfTheirHarmonics) {
+    Image image = noise(32, 16, 35);
+    setPixel(image, 0, 0, 90.f, -20.f, 5.f);
+    const std::vector<Light> lights = lightsOfProbe(image, LightMethod::median, 5).lights;
+    for (const int degree : {2, 16, 64}) {
+        for (const bool endless : {false, true}) {
+            const IrradianceWeights weights = irradianceWeights(degree, endless);
+            const double expected = irradiancePower(lightHarmonics(lights, degree, 1), weights);
+            EXPECT_NEAR(irradiancePower(lights, weights), expected, 1e-12 * expected)
+                << degree << " " << endless;
+        }
+    }
+}
+
 TEST(MaxError, NoSmallerCountOfTheCutsKeepsIt) {
+    // Few lights, where hardly a count can be skipped, and more than the first 64 cuts have.
     const Image image = noise(32, 16, 33);
     for (const LightMethod method : {LightMethod::median, LightMethod::variance}) {
-        LightRequest request;
-        request.method = method;
-        request.max_error = 0.1;
-        const LightSet set = cutLights(image, request, 2);
-        EXPECT_LE(set.irradiance_error, 0.1);
-        ASSERT_GT(set.lights.size(), 4u);
-        for (int count = 1; count < static_cast<int>(set.lights.size()); ++count) {
-            EXPECT_GT(lightsOfProbe(image, method, count).irradiance_error, 0.1)
-                << methodName(method) << " " << count << " of " << set.lights.size();
+        for (const double wanted : {0.1, 0.01}) {
+            LightRequest request;
+            request.method = method;
+            request.max_error = wanted;
+            const LightSet set = cutLights(image, request, 2);
+            const int found = static_cast<int>(set.lights.size());
+            ASSERT_GT(found, wanted == 0.1 ? 4 : 64);
+            EXPECT_LE(set.irradiance_error, wanted);
+            EXPECT_NEAR(lightsOfProbe(image, method, found).irradiance_error, set.irradiance_error,
+                        1e-9);
+            for (int count = 1; count < found; ++count) {
+                EXPECT_GT(lightsOfProbe(image, method, count).irradiance_error, wanted)
+                    << methodName(method) << " " << count << " of " << found;
+            }
         }
-        const int count = static_cast<int>(set.lights.size());
-        EXPECT_NEAR(lightsOfProbe(image, method, count).irradiance_error, set.irradiance_error,
-                    1e-9);
+    }
+}
+
+TEST(MaxError, TellsHowFarTheSearchHasCome) {
+    std::vector<double> told;
+    LightRequest request;
+    request.progress = [&](double done) { told.push_back(done); };
+    for (const double wanted : {0.01, 1e-6}) {
+        told.clear();
+        request.max_error = wanted;
+        if (wanted == 0.01)
+            cutLights(noise(32, 16, 33), request, 2);
+        else
+            EXPECT_THROW(cutLights(noise(32, 16, 33), request, 2), Error);
+        ASSERT_GT(told.size(), 5u);
+        EXPECT_TRUE(std::ranges::is_sorted(told, std::less_equal()));
+        EXPECT_LT(told[0], 0.2);
+        EXPECT_EQ(told.back(), 1); // wipes the line
     }
 }
 
