@@ -103,7 +103,7 @@ double lampError(const Image& probe, const Image& residual, const Light& lamp, i
     LightHarmonics difference = whole;
     difference -= probeHarmonics(residual, degree, threads);
     difference -= lightHarmonics({lamp}, degree, threads);
-    return irradianceError(whole, difference);
+    return irradianceError(whole, difference, {&lamp, 1});
 }
 
 } // namespace ibl

@@ -14,24 +14,43 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <span>
+#include <utility>
 
 namespace ibl {
 namespace {
+
+struct Search {
+    const Image& latlong;
+    const LightRequest& request;
+    const LitTree& cuts;
+    const std::vector<RegionSums>& sums;
+    const LightHarmonics& probe;
+    int threads;
+};
 
 /// The cuts of a probe, and the lights of their nodes.
 struct Cuts {
     const LitTree& lit;
     std::vector<Light> lights; ///< of every node; of dark ones without light
+    /// What the lights after each number of cuts add to the squared error beyond the degree.
+    std::vector<double> beyond;
 };
 
-Cuts cutsOf(const LitTree& lit, const std::vector<RegionSums>& sums, const Image& latlong,
-            LightPlacement placement) {
-    Cuts cuts{lit, std::vector<Light>(lit.tree.nodes.size())};
-    for (std::size_t node = 0; node < sums.size(); ++node) {
-        if (!lit.is_lit[node]) continue;
-        cuts.lights[node] =
-            lightOf(sums[node], lit.tree.nodes[node], latlong.width, latlong.height, placement);
+Cuts cutsOf(const Search& s, double norm) {
+    Cuts cuts{s.cuts, std::vector<Light>(s.cuts.tree.nodes.size()), {}};
+    std::vector<double> beyond;
+    for (std::size_t node = 0; node < cuts.lights.size(); ++node) {
+        if (s.cuts.is_lit[node]) {
+            cuts.lights[node] = lightOf(s.sums[node], s.cuts.tree.nodes[node], s.latlong.width,
+                                        s.latlong.height, s.request.placement);
+        }
+        beyond.push_back(powerBeyond(s.probe.degree, cuts.lights[node]) / norm);
+    }
+    cuts.beyond.push_back(beyond[0]);
+    for (std::size_t k = 0; k < s.cuts.tree.cut.size(); ++k) {
+        const double change = beyond[2 * k + 1] + beyond[2 * k + 2] -
+                              beyond[static_cast<std::size_t>(s.cuts.tree.cut[k])];
+        cuts.beyond.push_back(cuts.beyond.back() + change);
     }
     return cuts;
 }
@@ -44,10 +63,10 @@ Light negative(Light light) {
 /// The probe less its lights after some cuts, to some degree.
 class Difference {
 public:
-    Difference(const Cuts& cuts, LightHarmonics probe, bool endless, double norm, int threads)
+    Difference(const Cuts& cuts, LightHarmonics probe, double norm, int threads)
         : cuts_(cuts),
           harmonics_(std::move(probe)),
-          weights_(irradianceWeights(harmonics_.degree, endless)),
+          weights_(irradianceWeights(harmonics_.degree)),
           norm_(norm),
           threads_(threads) {
         harmonics_ -= lightHarmonics({cuts.lights[0]}, harmonics_.degree, 1);
@@ -74,21 +93,27 @@ public:
         }
         harmonics_ -= lightHarmonics(changed, harmonics_.degree, threads_);
         at_ = cuts;
-        return std::sqrt(irradiancePower(harmonics_, weights_) / norm_);
+        distance_ = std::sqrt(irradiancePower(harmonics_, weights_) / norm_);
+        return errorAt(cuts, distance_);
     }
 
-    /// The first number of cuts beyond the last that may have the error `wanted`, when that after
-    /// the last is `error`; one more than there are if none may.
-    std::size_t nextWithin(double error, double wanted) const {
+    /// The first number of cuts beyond the last that may have the error `wanted`; one more than
+    /// there are if none may.
+    std::size_t nextWithin(double wanted) const {
+        double distance = distance_;
         std::size_t cuts = at_;
         while (cuts < cuts_.lit.tree.cut.size()) {
-            error -= step(cuts++);
-            if (error <= wanted) return cuts;
+            distance = std::max(0.0, distance - step(cuts++));
+            if (errorAt(cuts, distance) <= wanted) return cuts;
         }
         return cuts + 1;
     }
 
 private:
+    double errorAt(std::size_t cuts, double distance) const {
+        return std::sqrt(distance * distance + std::max(0.0, cuts_.beyond[cuts]));
+    }
+
     /// How far cut k moves the difference, rounded up.
     double step(std::size_t k) const {
         const Light& whole = cuts_.lights[static_cast<std::size_t>(cuts_.lit.tree.cut[k])];
@@ -106,6 +131,7 @@ private:
     double norm_;
     int threads_;
     std::size_t at_ = 0;
+    double distance_ = 0; ///< the error up to the degree
 };
 
 /// The coefficients up to a lower degree.
@@ -128,18 +154,14 @@ std::size_t cutsBeyond(const LitTree& cuts, int lit) {
     return k;
 }
 
-/// Tells how far the error's logarithm has come on its way to the wanted error's.
+/// Tells of each percent of the most lights that the search has left behind.
 class SearchProgress {
 public:
-    SearchProgress(const TellProgress& tell, double wanted) : tell_(tell), wanted_(wanted) {}
+    explicit SearchProgress(const TellProgress& tell) : tell_(tell) {}
 
-    void reached(double error) {
-        if (!tell_) return;
-        if (first_ == 0) first_ = error;
-        const double part = std::log(first_ / error) / std::log(first_ / wanted_);
-        const int percent = static_cast<int>(100 * std::clamp(part, 0.0, 0.99));
-        if (percent > told_) tell_(0.01 * percent);
-        told_ = std::max(told_, percent);
+    void reached(std::size_t cuts) {
+        const int percent = static_cast<int>(100 * cuts / kMostLights);
+        if (tell_ && percent > std::exchange(told_, percent)) tell_(0.01 * percent);
     }
     void finish() const {
         if (tell_) tell_(1);
@@ -147,43 +169,29 @@ public:
 
 private:
     const TellProgress& tell_;
-    double wanted_;
-    double first_ = 0;
     int told_ = 0;
-};
-
-struct Search {
-    const Image& latlong;
-    const LightRequest& request;
-    const LitTree& cuts;
-    const std::vector<RegionSums>& sums;
-    const LightHarmonics& probe;
-    int threads;
 };
 
 std::optional<LightSet> firstWithin(const Search& s, std::size_t first, SearchProgress& progress) {
     const double wanted = *s.request.max_error;
-    const double norm = irradiancePower(s.probe, irradianceWeights(s.probe.degree, false));
-    const Cuts all = cutsOf(s.cuts, s.sums, s.latlong, s.request.placement);
-    Difference whole(all, s.probe, true, norm, s.threads);
-    Difference low(all, lowPart(s.probe, s.probe.degree / 4), false, norm, s.threads);
+    const double norm = irradiancePower(s.probe, irradianceWeights(s.probe.degree));
+    const Cuts all = cutsOf(s, norm);
+    Difference whole(all, s.probe, norm, s.threads);
+    Difference low(all, lowPart(s.probe, s.probe.degree / 4), norm, s.threads);
     for (std::size_t cuts = first; cuts <= s.cuts.tree.cut.size();) {
-        const double low_error = low.errorAfter(cuts);
-        if (low_error > wanted) {
-            progress.reached(low_error);
-            cuts = low.nextWithin(low_error, wanted);
+        progress.reached(cuts);
+        if (low.errorAfter(cuts) > wanted) {
+            cuts = low.nextWithin(wanted);
             continue;
         }
-        const double error = whole.errorAfter(cuts);
-        if (error <= wanted) {
+        if (whole.errorAfter(cuts) <= wanted) {
             // What dark regions hold goes to lights as well; that is in the error that counts.
             LightSet set;
             set.lights = lightsAfter(s.cuts, s.sums, cuts, s.latlong, s.request.placement);
             set.irradiance_error = errorOf(set.lights, s.probe, s.threads);
             if (set.irradiance_error <= wanted) return set;
         }
-        progress.reached(error);
-        cuts = whole.nextWithin(error, wanted);
+        cuts = whole.nextWithin(wanted);
     }
     return std::nullopt;
 }
@@ -199,9 +207,9 @@ Error cannotBeMet(double wanted, int count, double error) {
 } // namespace
 
 LightSet fewestLights(const Image& latlong, const LightRequest& request, int threads) {
-    SearchProgress progress(request.progress, *request.max_error);
+    SearchProgress progress(request.progress);
     // As many as are compared to one degree (harmonicDegree()).
-    constexpr std::array kMost{64, 1024, 4096, kMostLights};
+    constexpr std::array kMost{64, 1024, 16384, kMostLights};
     int tried = 0;
     for (const int most : kMost) {
         const LightHarmonics probe = probeHarmonics(latlong, harmonicDegree(most), threads);

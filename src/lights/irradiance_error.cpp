@@ -13,27 +13,28 @@ double square(const LightHarmonics::Parts& parts) {
     return sum;
 }
 
+/// int_a^inf (1 - exp(-x^2))^2 / x^4 dx, by parts: with p = 1, 2
+///     int_a^inf exp(-p x^2) / x^4 dx = e / (3 a^3) - 2 p / 3 (e / a - sqrt(pi p) erfc(a sqrt p)),
+/// e = exp(-p a^2). Near 0 the integrand is 1 and the terms cancel.
+double spreadIntegral(double a) {
+    if (a < 1e-3) return 4.0 / 3 * std::sqrt(kPi) * (std::sqrt(2.0) - 1) - a;
+    const auto part = [&](double p) {
+        const double e = std::exp(-p * a * a);
+        return e / (3 * a * a * a) -
+               2 * p / 3 * (e / a - std::sqrt(kPi * p) * std::erfc(a * std::sqrt(p)));
+    };
+    return 1 / (3 * a * a * a) - 2 * part(1) + part(2);
+}
+
 } // namespace
 
-IrradianceWeights irradianceWeights(int degree, bool endless) {
+IrradianceWeights irradianceWeights(int degree) {
     IrradianceWeights weights{degree, 4 * kPi * kPi / 9, {}};
     double a = kPi;
-    const auto advance = [&](int l) { a *= -(l - 1.0) / (l + 4); };
     for (int l = 0; l <= degree; l += 2) {
         weights.even.push_back(a * a);
-        advance(l);
+        a *= -(l - 1.0) / (l + 4);
     }
-    if (!endless) return weights;
-    constexpr int kFar = 4096; // of the sum over all l, 1e-8 lies beyond
-    double beyond = 0;
-    for (int l = degree + 2; l <= kFar; l += 2) {
-        beyond += a * a * (2 * l + 1);
-        advance(l);
-    }
-    const int first = 3 * degree / 8 + 1; // l / 2 of the upper quarter
-    for (int i = first; i <= degree / 2; ++i)
-        weights.even[static_cast<std::size_t>(i)] +=
-            beyond / (degree / 2 + 1 - first) / (4 * i + 1);
     return weights;
 }
 
@@ -69,12 +70,22 @@ double irradiancePower(std::span<const Light> lights, const IrradianceWeights& w
     return sum;
 }
 
-double irradianceError(const LightHarmonics& probe, const LightHarmonics& difference) {
-    const double norm = irradiancePower(probe, irradianceWeights(probe.degree, false));
-    return norm > 0
-               ? std::sqrt(irradiancePower(difference, irradianceWeights(difference.degree, true)) /
-                           norm)
-               : 0.0;
+double powerBeyond(int degree, const Light& light) {
+    const double radius =
+        light.radius > 0 ? light.radius : std::sqrt(light.solid_angle / (2 * kPi));
+    return 2 * light.irradiance.length2() * std::pow(radius / 2, 3) *
+           spreadIntegral((degree + 1.5) * radius / 2);
+}
+
+double irradianceError(const LightHarmonics& probe, const LightHarmonics& difference,
+                       std::span<const Light> lights) {
+    const IrradianceWeights weights = irradianceWeights(probe.degree);
+    const double norm = irradiancePower(probe, weights);
+    if (norm <= 0) return 0;
+    double power = irradiancePower(difference, weights);
+    for (const Light& light : lights)
+        power += powerBeyond(probe.degree, light);
+    return std::sqrt(power / norm);
 }
 
 } // namespace ibl

@@ -87,7 +87,7 @@ std::vector<RegionSums> allSums(const Image& latlong, const CutTree& tree, int t
 double errorOf(const std::vector<Light>& lights, const LightHarmonics& probe, int threads) {
     LightHarmonics difference = probe;
     difference -= lightHarmonics(lights, probe.degree, threads);
-    return irradianceError(probe, difference);
+    return irradianceError(probe, difference, lights);
 }
 
 } // namespace ibl
