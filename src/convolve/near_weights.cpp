@@ -276,8 +276,7 @@ NearField makeNearField(const NearKernel& kernel, const NearRules& rules, int pr
 NearWeights nearWeights(const NearField& field, const MapExtent& map, int x, int y,
                         const Footprint& of_map) {
     NearWeights weights;
-    const Footprint footprint =
-        isBallMap(map.layout) ? footprintOfTexel(of_map, map.layout, map.width, x, y) : of_map;
+    const Footprint footprint = footprintOfTexel(of_map, map.layout, map.width, x, y);
     const double scale = footprint.scale;
     const auto [low, high] = ownPart(map.layout, map.width, map.height, x, y);
     const V2d middle = (low + high) * (0.5 * scale), half = (high - low) * (0.5 * scale);
@@ -296,16 +295,11 @@ NearWeights nearWeights(const NearField& field, const MapExtent& map, int x, int
     addFar(block, centre, {side(V2d(half.x, 0)), side(V2d(0, half.y))}, radius);
     if (scale >= kLeastOutline) {
         const double own = solidAngle(outline, centre);
-        // The area filter's texels are exact;
-        // of OpenEXR's lat-long the first and the last in a row are halves of one.
-        const bool half_of_one =
-            map.layout == Layout::exrLatlong && map.width > 1 && (x == 0 || x == map.width - 1);
-        const double whole =
-            texelSolidAngle(map.layout, map.width, map.height, x, y) * (half_of_one ? 2 : 1);
+        const double exact = partSolidAngle(map.layout, map.width, map.height, x, y);
         const Texel texel{centre,
                           radius,
                           outline,
-                          scale < 1 ? own : std::copysign(whole, own),
+                          scale < 1 ? own : std::copysign(exact, own), // as the area filter
                           pointsOf(map, x, y, {scale, 2}),
                           pointsOf(map, x, y, {scale, 3})};
         addTexel(block, texel, scale < 1 ? Potential::withArea : Potential::withoutArea);

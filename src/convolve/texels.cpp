@@ -107,6 +107,11 @@ TexelPart ownPart(Layout layout, int width, int height, int x, int y) {
     return part;
 }
 
+double partSolidAngle(Layout layout, int width, int height, int x, int y) {
+    const bool half = layout == Layout::exrLatlong && width > 1 && (x == 0 || x == width - 1);
+    return texelSolidAngle(layout, width, height, x, y) * (half ? 2 : 1);
+}
+
 double texelAngle(const PrefilterRequest& request) {
     if (isSquareMap(request.layout)) return std::sqrt(4 * kPi / texelCount(request));
     const bool rows = request.layout == Layout::latlong || request.layout == Layout::exrLatlong;
@@ -118,6 +123,7 @@ Footprint footprintOf(const Lobe& lobe, double texel, int degree) {
 }
 
 Footprint footprintOfTexel(const Footprint& of_map, Layout layout, int size, int x, int y) {
+    if (!isBallMap(layout)) return of_map;
     const double rho = std::hypot((2.0 * x + 1) / size - 1, (2.0 * y + 1) / size - 1);
     // Of the angle from +Z.
     const auto angle = [layout](double r) {

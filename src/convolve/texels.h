@@ -32,7 +32,8 @@ double texelAngle(const PrefilterRequest& request);
 /// field's highest degree falls between them.
 Footprint footprintOf(const Lobe& lobe, double texel, int degree);
 
-/// The footprint of one texel of a ball map, whose texels are the longer the nearer to the rim.
+/// The footprint of one texel: the map's, but for ball maps, whose texels are the longer the nearer
+/// they are to the rim.
 Footprint footprintOfTexel(const Footprint& of_map, Layout layout, int size, int x, int y);
 
 /// The number of texels of the map that have a direction.
@@ -58,6 +59,10 @@ struct TexelPart {
     V2d low, high;
 };
 TexelPart ownPart(Layout layout, int width, int height, int x, int y);
+
+/// Solid angle of that part: texelSolidAngle, but for OpenEXR's lat-long, where the first and the
+/// last texel of a row are one, and each counts as half of it. Any layout.
+double partSolidAngle(Layout layout, int width, int height, int x, int y);
 
 /// A map's image.
 struct MapExtent {

@@ -244,6 +244,9 @@ ObjectFile readObj(const std::string& path, int threads) {
             part.surface.alpha_texture =
                 addTexture(path, m.alpha_texname, Reading::alpha, threads, result, textures);
             if (m.dissolve < 1 || part.surface.alpha_texture) part.surface.alpha_cutoff = kBlended;
+            if (m.dissolve <= 0) // some programs write Tr the other way round
+                result.notes.push_back("its material " + m.name +
+                                       " is not seen, having d 0 or Tr 1");
         }
         result.object.parts.push_back(std::move(part));
     }

@@ -288,8 +288,10 @@ Image Renderer::render(const Camera& camera, Image spare) {
     const int width = state_->options.width, height = state_->options.height;
     const int channels = state_->with_alpha ? 4 : 3;
     Image frame = std::move(spare);
-    if (frame.width != width || frame.height != height || frame.channels != channels)
-        frame = Image(width, height, channels);
+    frame.width = width;
+    frame.height = height;
+    frame.channels = channels; // the spare one may have lost its alpha
+    frame.pixels.resize(frame.rowFloats() * static_cast<std::size_t>(height));
     state_->drawFrame(camera, frame);
     return frame;
 }

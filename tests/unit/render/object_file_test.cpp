@@ -333,6 +333,12 @@ TEST_F(ObjectFiles, ObjMaterialsDissolve) {
     EXPECT_EQ(texel(4), 0.875F);
     EXPECT_EQ(file.object.parts[0].surface.base_texture, file.object.parts[4].surface.base_texture);
     EXPECT_EQ(file.files.size(), 4u); // each once
+    EXPECT_TRUE(file.notes.empty());
+    write("m.mtl", "newmtl whole\nKd 1 1 1\nnewmtl half\nTr 1\n");
+    const ObjectFile unseen =
+        read("a.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl half\nf 1 2 3\n");
+    ASSERT_EQ(unseen.notes.size(), 1u);
+    EXPECT_NE(unseen.notes[0].find("material half is not seen"), std::string::npos);
 }
 
 } // namespace
