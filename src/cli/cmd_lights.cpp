@@ -77,11 +77,23 @@ LightSet readPrevious(Session& session, const LightsOptions& options, std::strin
     return previous;
 }
 
+/// Pixels that have what the method cuts by.
+std::size_t litPixels(const Image& latlong, LightMethod method) {
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < latlong.pixels.size(); k += 3) {
+        const float* rgb = &latlong.pixels[k];
+        const double luminance = luminanceOf({rgb[0], rgb[1], rgb[2]});
+        if (luminance > 0 || (luminance < 0 && method == LightMethod::variance)) ++count;
+    }
+    return count;
+}
+
 LightSet cut(Session& session, const LightsOptions& options, const Image& latlong) {
     LightRequest request;
     request.method = options.method.value_or(LightMethod::median);
     request.count = options.count.value_or(request.count);
     request.max_error = options.max_error;
+    request.progress = session.progress("cut");
     request.placement = options.placement.value_or(LightPlacement::centroid);
     LightSet previous;
     if (!options.previous.empty()) {
@@ -94,11 +106,14 @@ LightSet cut(Session& session, const LightsOptions& options, const Image& latlon
         session.stage("cut", [&] { return cutLights(latlong, request, session.threads()); });
     const std::string& source = options.probe.input;
     if (set.lights.empty()) {
-        session.note(source, "black: no lights");
+        const bool black = std::ranges::all_of(latlong.pixels, [](float v) { return v == 0; });
+        session.note(source, black ? "black: no lights" : "no luminance above 0: no lights");
     } else if (!options.max_error && static_cast<int>(set.lights.size()) < request.count) {
         session.note(source, "only " + std::to_string(set.lights.size()) + " of " +
-                                 std::to_string(request.count) +
-                                 " lights: no more pixels have energy");
+                                 std::to_string(request.count) + " lights: " +
+                                 (litPixels(latlong, request.method) > set.lights.size()
+                                      ? "each other pixel has less than 2e-19 of the energy"
+                                      : "no more pixels have energy"));
     }
     return set;
 }

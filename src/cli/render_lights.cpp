@@ -24,7 +24,10 @@ std::vector<SceneLight> cutOf(Session& session, const LightArguments& arguments,
     const Image latlong = latlongOf(Panorama(probe), session.threads());
     const LightSet set =
         session.stage("lights", [&] { return cutLights(latlong, request, session.threads()); });
-    if (set.lights.empty()) throw inputError("--lights", "the probe is black; it has no lights");
+    if (set.lights.empty()) {
+        throw inputError("--lights", "the probe has no luminance above 0, so no lights; "
+                                     "leave out --lights or name a file of lights");
+    }
     session.results()["irradiance_error"] = set.irradiance_error;
     return sceneLights(set);
 }

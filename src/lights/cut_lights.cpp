@@ -1,14 +1,14 @@
 #include "lights/cut_lights.h"
 
-#include "core/error.h"
+#include "lights/fewest_lights.h"
 #include "lights/frame_identity.h"
 #include "lights/importance.h"
 #include "lights/irradiance_error.h"
+#include "lights/lit_tree.h"
 #include "lights/matched_places.h"
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <utility>
 
 namespace ibl {
@@ -21,151 +21,6 @@ struct MethodRow {
 constexpr std::array<MethodRow, 3> kMethods{{{LightMethod::median, "median"},
                                              {LightMethod::variance, "variance"},
                                              {LightMethod::importance, "importance"}}};
-
-/// The cuts, and which of their nodes have energy.
-struct LitTree {
-    CutTree tree;
-    std::vector<bool> is_lit;
-};
-
-template <class Table>
-LitTree withLit(CutTree&& tree, const Table& table) {
-    LitTree result{std::move(tree), {}};
-    for (const PixelRegion& r : result.tree.nodes)
-        result.is_lit.push_back(table.energy(r) > 0);
-    return result;
-}
-
-int litCount(const LitTree& cuts) {
-    const std::vector<int> leaves = leavesOf(cuts.tree, cuts.tree.cut.size());
-    return static_cast<int>(std::count_if(leaves.begin(), leaves.end(), [&](int node) {
-        return cuts.is_lit[static_cast<std::size_t>(node)];
-    }));
-}
-
-/// Blocks of pixels for the variance cut, as a shift: no more of them than half a million or 32 a
-/// light, so that the table does not take longer to fill than a large probe to read.
-int blockShift(const Image& latlong, int count) {
-    const long most = std::max(1L << 19, 32L * count);
-    int shift = 0;
-    while ((long{latlong.width} >> shift) * (latlong.height >> shift) > most)
-        ++shift;
-    return shift;
-}
-
-LitTree varianceCuts(const Image& latlong, int count, int threads) {
-    for (int shift = blockShift(latlong, count);; shift = 0) {
-        const MomentTable table(latlong, shift, threads);
-        LitTree cuts = withLit(varianceCut(table, count), table);
-        // Few lit blocks may be many lit pixels.
-        if (shift > 0 && litCount(cuts) < count) continue;
-        for (PixelRegion& node : cuts.tree.nodes)
-            node = table.pixels(node);
-        return cuts;
-    }
-}
-
-LitTree cutProbe(const Image& latlong, LightMethod method, int count, int threads) {
-    if (method == LightMethod::variance) return varianceCuts(latlong, count, threads);
-    const SummedAreaTable table(latlong, threads);
-    return withLit(medianCut(table, count, threads), table);
-}
-
-std::vector<Light> lightsAfter(const LitTree& cuts, const std::vector<RegionSums>& sums,
-                               std::size_t count, const Image& latlong, LightPlacement placement) {
-    std::vector<RegionSums> leaf_sums;
-    std::vector<PixelRegion> regions;
-    std::vector<bool> is_lit;
-    for (const int node : leavesOf(cuts.tree, count)) {
-        const auto n = static_cast<std::size_t>(node);
-        leaf_sums.push_back(sums[n]);
-        regions.push_back(cuts.tree.nodes[n]);
-        is_lit.push_back(cuts.is_lit[n]);
-    }
-    return lightsOf(leaf_sums, regions, is_lit, latlong.width, latlong.height, placement);
-}
-
-/// Sums of every node: the leaves' from the pixels, the others' from their parts'.
-std::vector<RegionSums> allSums(const Image& latlong, const CutTree& tree, int threads) {
-    const std::vector<int> leaves = leavesOf(tree, tree.cut.size());
-    std::vector<PixelRegion> regions;
-    for (const int node : leaves)
-        regions.push_back(tree.nodes[static_cast<std::size_t>(node)]);
-    const std::vector<RegionSums> found = regionSums(latlong, regions, threads);
-    std::vector<RegionSums> sums(tree.nodes.size());
-    for (std::size_t i = 0; i < leaves.size(); ++i)
-        sums[static_cast<std::size_t>(leaves[i])] = found[i];
-    for (std::size_t k = tree.cut.size(); k-- > 0;) {
-        RegionSums& whole = sums[static_cast<std::size_t>(tree.cut[k])];
-        whole += sums[2 * k + 1];
-        whole += sums[2 * k + 2];
-    }
-    return sums;
-}
-
-double errorOf(const std::vector<Light>& lights, const LightHarmonics& probe, int threads) {
-    LightHarmonics difference = probe;
-    difference -= lightHarmonics(lights, probe.degree, threads);
-    return irradianceError(probe, difference);
-}
-
-/// The first number of cuts whose lights keep the error: a cut changes three lights, so the
-/// difference's harmonics follow from those before it at the same cost for every number.
-struct Search {
-    const Image& latlong;
-    const LightRequest& request;
-    const LitTree& cuts;
-    const std::vector<RegionSums>& sums;
-    const LightHarmonics& probe;
-    int threads;
-};
-
-std::optional<LightSet> firstWithin(const Search& s) {
-    LightHarmonics difference = s.probe;
-    const auto add = [&](std::size_t node, double sign, std::vector<Light>& changed) {
-        if (!s.cuts.is_lit[node]) return;
-        changed.push_back(lightOf(s.sums[node], s.cuts.tree.nodes[node], s.latlong.width,
-                                  s.latlong.height, s.request.placement));
-        changed.back().irradiance *= sign;
-    };
-    std::vector<Light> changed;
-    add(0, 1, changed);
-    for (std::size_t cuts = 0;; ++cuts) {
-        difference -= lightHarmonics(changed, s.probe.degree, 1);
-        if (irradianceError(s.probe, difference) <= *s.request.max_error) {
-            // What dark regions hold goes to lights as well; that is in the error that counts.
-            LightSet set;
-            set.lights = lightsAfter(s.cuts, s.sums, cuts, s.latlong, s.request.placement);
-            set.irradiance_error = errorOf(set.lights, s.probe, s.threads);
-            if (set.irradiance_error <= *s.request.max_error) return set;
-        }
-        if (cuts == s.cuts.tree.cut.size()) return std::nullopt;
-        changed.clear();
-        add(static_cast<std::size_t>(s.cuts.tree.cut[cuts]), -1, changed);
-        add(2 * cuts + 1, 1, changed);
-        add(2 * cuts + 2, 1, changed);
-    }
-}
-
-LightSet fewestLights(const Image& latlong, const LightRequest& request, int threads) {
-    for (int most = 64;; most = std::min(kMostLights, 8 * most)) {
-        const LightHarmonics probe = probeHarmonics(latlong, harmonicDegree(most), threads);
-        const LitTree cuts = cutProbe(latlong, request.method, most, threads);
-        const std::vector<RegionSums> sums = allSums(latlong, cuts.tree, threads);
-        if (sums[0].energy <= 0) return {};
-        if (auto set = firstWithin({latlong, request, cuts, sums, probe, threads})) return *set;
-        if (most == kMostLights || litCount(cuts) < most) {
-            const double best =
-                errorOf(lightsAfter(cuts, sums, cuts.tree.cut.size(), latlong, request.placement),
-                        probe, threads);
-            char text[160];
-            std::snprintf(text, sizeof text,
-                          "--max-error %g cannot be met: %d lights have %.2g; allow a larger error",
-                          *request.max_error, litCount(cuts), best);
-            throw Error(ExitCode::accuracy, text);
-        }
-    }
-}
 
 /// None for a probe without light.
 std::vector<Light> lightsFor(const Image& latlong, const LightRequest& request, int threads) {
@@ -248,7 +103,7 @@ double lampError(const Image& probe, const Image& residual, const Light& lamp, i
     LightHarmonics difference = whole;
     difference -= probeHarmonics(residual, degree, threads);
     difference -= lightHarmonics({lamp}, degree, threads);
-    return irradianceError(whole, difference);
+    return irradianceError(whole, difference, {&lamp, 1});
 }
 
 } // namespace ibl

@@ -1,6 +1,7 @@
 // From a probe to lights with a known error.
 #pragma once
 
+#include "core/progress.h"
 #include "image/image.h"
 #include "lights/cut_tree.h"
 #include "lights/light.h"
@@ -29,6 +30,7 @@ struct LightRequest {
     /// Lights of the frame before, by the same method. Their regions are kept where they still
     /// cover the probe and their error is at most a quarter above that of a new cut.
     const LightSet* previous = nullptr;
+    TellProgress progress; ///< of the search for max_error
 };
 
 /// Lights of `latlong` (three channels, finite): from brightest to dimmest, or in the order of the

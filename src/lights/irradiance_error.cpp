@@ -1,6 +1,7 @@
 #include "lights/irradiance_error.h"
 
 #include <cmath>
+#include <utility>
 
 namespace ibl {
 namespace {
@@ -12,47 +13,79 @@ double square(const LightHarmonics::Parts& parts) {
     return sum;
 }
 
-/// |f_l|^2 over all m, for l = 0, 2, ... degree.
-std::vector<double> evenPower(const LightHarmonics& h) {
-    std::vector<double> power(static_cast<std::size_t>(h.degree / 2 + 1), 0.0);
-    for (int m = 0; m <= h.degree; ++m) {
-        const LightHarmonics::Parts* in = h.even.data() + h.column(m);
-        for (std::size_t l = static_cast<std::size_t>(m + 1) / 2; l < power.size(); ++l)
-            power[l] += (m == 0 ? 1 : 2) * square(*in++);
-    }
-    return power;
-}
-
-/// sum over l of A_l^2 |f_l|^2, the spectrum continued beyond the degree if `endless`.
-double irradiancePower(const LightHarmonics& h, bool endless) {
-    constexpr double kFirst = 2 * kPi / 3; // A_1
-    double sum = kFirst * kFirst * (square(h.first[0]) + 2 * square(h.first[1]));
-    const std::vector<double> power = evenPower(h);
-    double a = kPi, level = 0;
-    int levels = 0;
-    for (std::size_t i = 0; i < power.size(); ++i) {
-        const int l = 2 * static_cast<int>(i);
-        sum += a * a * power[i];
-        if (4 * l > 3 * h.degree) {
-            level += power[i] / (2 * l + 1);
-            ++levels;
-        }
-        a *= -(l - 1.0) / (l + 4);
-    }
-    if (!endless) return sum;
-    constexpr int kFar = 4096; // of the sum over all l, 1e-8 lies beyond
-    for (int l = h.degree + 2; l <= kFar; l += 2) {
-        sum += a * a * (2 * l + 1) * level / levels;
-        a *= -(l - 1.0) / (l + 4);
-    }
-    return sum;
+/// int_a^inf (1 - exp(-x^2))^2 / x^4 dx, by parts: with p = 1, 2
+///     int_a^inf exp(-p x^2) / x^4 dx = e / (3 a^3) - 2 p / 3 (e / a - sqrt(pi p) erfc(a sqrt p)),
+/// e = exp(-p a^2). Near 0 the integrand is 1 and the terms cancel.
+double spreadIntegral(double a) {
+    if (a < 1e-3) return 4.0 / 3 * std::sqrt(kPi) * (std::sqrt(2.0) - 1) - a;
+    const auto part = [&](double p) {
+        const double e = std::exp(-p * a * a);
+        return e / (3 * a * a * a) -
+               2 * p / 3 * (e / a - std::sqrt(kPi * p) * std::erfc(a * std::sqrt(p)));
+    };
+    return 1 / (3 * a * a * a) - 2 * part(1) + part(2);
 }
 
 } // namespace
 
-double irradianceError(const LightHarmonics& probe, const LightHarmonics& difference) {
-    const double norm = irradiancePower(probe, false);
-    return norm > 0 ? std::sqrt(irradiancePower(difference, true) / norm) : 0.0;
+IrradianceWeights irradianceWeights(int degree) {
+    IrradianceWeights weights{degree, 4 * kPi * kPi / 9, {}};
+    double a = kPi;
+    for (int l = 0; l <= degree; l += 2) {
+        weights.even.push_back(a * a);
+        a *= -(l - 1.0) / (l + 4);
+    }
+    return weights;
+}
+
+double irradiancePower(const LightHarmonics& h, const IrradianceWeights& weights) {
+    double sum = weights.first * (square(h.first[0]) + 2 * square(h.first[1]));
+    for (int m = 0; m <= h.degree; ++m) {
+        const LightHarmonics::Parts* in = h.even.data() + h.column(m);
+        double column = 0;
+        for (std::size_t i = static_cast<std::size_t>(m + 1) / 2; i < weights.even.size(); ++i)
+            column += weights.even[i] * square(*in++);
+        sum += (m == 0 ? 1 : 2) * column;
+    }
+    return sum;
+}
+
+double irradiancePower(std::span<const Light> lights, const IrradianceWeights& weights) {
+    double sum = 0;
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        for (std::size_t j = 0; j <= i; ++j) {
+            const double x = lights[i].direction.dot(lights[j].direction);
+            // P_(l+1) = ((2l + 1) x P_l - l P_(l-1)) / (l + 1)
+            double before = 1, p = x, kernel = weights.even[0] + 3 * weights.first * x;
+            for (int l = 1; l < weights.degree; ++l) {
+                const double next = ((2 * l + 1) * x * p - l * before) / (l + 1);
+                before = std::exchange(p, next);
+                if (l % 2)
+                    kernel += weights.even[static_cast<std::size_t>(l + 1) / 2] * (2 * l + 3) * p;
+            }
+            sum += (i == j ? 1 : 2) * kernel / (4 * kPi) *
+                   lights[i].irradiance.dot(lights[j].irradiance);
+        }
+    }
+    return sum;
+}
+
+double powerBeyond(int degree, const Light& light) {
+    const double radius =
+        light.radius > 0 ? light.radius : std::sqrt(light.solid_angle / (2 * kPi));
+    return 2 * light.irradiance.length2() * std::pow(radius / 2, 3) *
+           spreadIntegral((degree + 1.5) * radius / 2);
+}
+
+double irradianceError(const LightHarmonics& probe, const LightHarmonics& difference,
+                       std::span<const Light> lights) {
+    const IrradianceWeights weights = irradianceWeights(probe.degree);
+    const double norm = irradiancePower(probe, weights);
+    if (norm <= 0) return 0;
+    double power = irradiancePower(difference, weights);
+    for (const Light& light : lights)
+        power += powerBeyond(probe.degree, light);
+    return std::sqrt(power / norm);
 }
 
 } // namespace ibl

@@ -208,8 +208,10 @@ Error noLamp(std::string_view subject, const char* format, double value, double 
 Lamp findLamp(const Image& latlong, std::string_view subject) {
     const Pixel peak = brightestPixel(latlong);
     const double most = litLuminance(latlong.at(peak.x, peak.y));
-    if (most <= 0) throw inputError(subject, "no sun or lamp: the probe is black; leave out --sun");
-    const double around = surroundings(latlong, peak);
+    if (most <= 0)
+        throw inputError(subject, "no sun or lamp: no luminance above 0; leave out --sun");
+    // The median is found to an eighth of a stop only, and nothing is brighter than the peak.
+    const double around = std::min(most, surroundings(latlong, peak));
     if (most < kLeastContrast * around) {
         throw noLamp(subject, "the brightest pixel is %.3g times its surroundings, %g are needed",
                      most / around, kLeastContrast);

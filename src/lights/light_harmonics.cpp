@@ -81,7 +81,7 @@ LightHarmonics& LightHarmonics::operator-=(const LightHarmonics& other) {
 }
 
 int harmonicDegree(int count) {
-    return count <= 1024 ? 64 : 128;
+    return count <= 1024 ? 64 : count <= 16384 ? 128 : 256;
 }
 
 LightHarmonics lightHarmonics(const std::vector<Light>& lights, int degree, int threads) {

@@ -33,7 +33,7 @@ struct LightHarmonics {
 };
 
 /// Degree to which `count` lights are compared with their probe: about as fine as the regions are;
-/// what lies beyond is extrapolated (irradiance_error.h).
+/// what lies beyond is modelled (irradiance_error.h).
 int harmonicDegree(int count);
 
 /// Of a lat-long probe (three channels, finite), pixels as areas. The probe is gathered on a grid

@@ -29,6 +29,34 @@ TEST(Lights, SunAndResidualAddUpToTheProbe) {
     EXPECT_FALSE(std::filesystem::exists(scratch / "no.exr"));
 }
 
+TEST(Lights, NoSunSaysByHowMuch) {
+    const Scratch scratch;
+    expectRefused(runTool({"lights", "builtin:furnace", "--sun"}, scratch.path()), 2,
+                  "the brightest pixel is 1 times its surroundings, 20 are needed");
+}
+
+TEST(Lights, FewerThanAskedSaysWhy) {
+    const Scratch scratch;
+    const auto said = [&](const std::string& rest, const std::string& peak, const char* method) {
+        runProgram({"oiiotool", "--pattern", "constant:color=" + rest, "16x8", "3",
+                    "--fill:color=" + peak, "1x1+5+3", "-d", "float", "-o", "p.exr"},
+                   scratch.path());
+        const ToolResult result =
+            runTool({"lights", "p.exr", "-n", "9", "--method", method}, scratch.path());
+        EXPECT_EQ(result.exit_code, 0);
+        EXPECT_EQ(Json::parse(result.out).at("lights").size(), 1u);
+        return result.err;
+    };
+    for (const char* method : {"median", "variance"}) {
+        EXPECT_NE(
+            said("0,0,0", "1,1,1", method).find("only 1 of 9 lights: no more pixels have energy"),
+            std::string::npos);
+        EXPECT_NE(said("0.5,0.5,0.5", "3e38,3e38,3e38", method)
+                      .find("only 1 of 9 lights: each other pixel has less than 2e-19 of the"),
+                  std::string::npos);
+    }
+}
+
 TEST(Lights, BlackProbeSaysSo) {
     const Scratch scratch;
     runProgram({"oiiotool", "--pattern", "constant:color=0,0,0", "16x8", "3", "-d", "float", "-o",
@@ -38,9 +66,18 @@ TEST(Lights, BlackProbeSaysSo) {
         const ToolResult result =
             runTool({"lights", "black.exr", "--method", method}, scratch.path());
         EXPECT_EQ(result.exit_code, 0) << result.err;
-        EXPECT_NE(result.err.find("no lights"), std::string::npos);
+        EXPECT_NE(result.err.find("black: no lights"), std::string::npos);
         EXPECT_TRUE(Json::parse(result.out).at("lights").empty());
     }
+    runProgram({"oiiotool", "--pattern", "constant:color=-1,-1,-1", "16x8", "3", "-d", "float",
+                "-o", "negative.exr"},
+               scratch.path());
+    EXPECT_NE(runTool({"lights", "negative.exr"}, scratch.path())
+                  .err.find("no luminance above 0: no lights"),
+              std::string::npos);
+    for (const char* probe : {"black.exr", "negative.exr"})
+        expectRefused(runTool({"lights", probe, "--sun"}, scratch.path()), 2,
+                      "no luminance above 0");
 }
 
 TEST(Lights, BadPixelsAreRefusedOrMended) {

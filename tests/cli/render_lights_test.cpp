@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace ibl {
@@ -176,8 +177,9 @@ TEST(RenderLights, SameBytesForAnyThreads) {
 TEST(RenderLights, Refusals) {
     const Scratch scratch;
     const auto refused = [&](Words words, int code, const std::string& said) {
-        words.insert(words.begin(), {"render", "--probe", "builtin:sky", "-o", "o.png", "--size",
-                                     "8x8", "--samples", "1"});
+        words.insert(words.begin(), {"render", "-o", "o.png", "--size", "8x8", "--samples", "1"});
+        if (std::ranges::find(words, "--probe") == words.end())
+            words.insert(words.end(), {"--probe", "builtin:sky"});
         expectRefused(runTool(words, scratch.path()), code, said);
     };
     refused({"--shader", "phong"}, 1, "give --lights");
@@ -224,10 +226,13 @@ TEST(RenderLights, Refusals) {
     refused({"--lights", "l.json", "--light-method", "median", "--shader", "lambert"}, 1,
             "--light-method");
     EXPECT_EQ(scratch.names(), Words{"l.json"});
-    expectRefused(runTool({"render", "--probe", "black.exr", "-o", "o.png", "--shader", "lambert",
-                           "--lights", "4"},
-                          scratch.path()),
-                  2, "black.exr");
+    for (const char* colour : {"0,0,0", "-1,-1,-1"}) {
+        runProgram({"oiiotool", "--pattern", std::string("constant:color=") + colour, "16x8", "3",
+                    "-d", "float", "-o", "dark.exr"},
+                   scratch.path());
+        refused({"--probe", "dark.exr", "--shader", "lambert", "--lights", "4"}, 2,
+                "no luminance above 0");
+    }
 }
 
 } // namespace

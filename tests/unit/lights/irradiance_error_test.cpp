@@ -7,6 +7,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <functional>
+
 namespace ibl {
 namespace {
 
@@ -112,23 +115,82 @@ TEST(IrradianceError, OfALightThatIsTheProbe) {
     EXPECT_EQ(lightsOfProbe(filled(8, 4, 0.f), LightMethod::median, 4).irradiance_error, 0);
 }
 
+TEST(IrradiancePower, OfAFewLightsIsThatOfTheirHarmonics) {
+    Image image = noise(32, 16, 35);
+    setPixel(image, 0, 0, 90.f, -20.f, 5.f);
+    const std::vector<Light> lights = lightsOfProbe(image, LightMethod::median, 5).lights;
+    for (const int degree : {2, 16, 64}) {
+        const IrradianceWeights weights = irradianceWeights(degree);
+        const double expected = irradiancePower(lightHarmonics(lights, degree, 1), weights);
+        EXPECT_NEAR(irradiancePower(lights, weights), expected, 1e-12 * expected) << degree;
+    }
+}
+
+TEST(IrradiancePower, BeyondADegreeIsTheSumOverHigherOnes) {
+    const std::vector<double> weights = irradianceWeights(40000).even;
+    for (const double radius : {1e-3, 5e-3, 0.02, 0.1, 0.8}) {
+        Light light;
+        light.irradiance = {2, 1, 0.5};
+        light.radius = radius;
+        for (const int degree : {64, 256}) {
+            double sum = 0;
+            for (std::size_t i = static_cast<std::size_t>(degree) / 2 + 1; i < weights.size();
+                 ++i) {
+                const double l = 2.0 * static_cast<double>(i);
+                const double part = 1 - std::exp(-l * l * radius * radius / 4);
+                sum += weights[i] * (2 * l + 1) / (4 * kPi) * 5.25 * part * part;
+            }
+            EXPECT_NEAR(powerBeyond(degree, light), sum, 0.02 * sum) << radius << " " << degree;
+        }
+    }
+}
+
+TEST(IrradianceError, SeesThatASmallSunIsNoPoint) {
+    // Of one pixel, whose light differs from it only where normals have it on their horizon.
+    Image image = filled(256, 128, 0.f);
+    setPixel(image, 60, 40, 1.f, 1.f, 1.f);
+    const LightSet set = lightsOfProbe(image, LightMethod::median, 1);
+    std::vector<Source> sun = points(image, 10);
+    std::erase_if(sun, [](const Source& s) { return s.power.x == 0; });
+    EXPECT_EQ(sun.size(), 100u);
+    const double exact = bruteError(sun, set.lights, 200000);
+    EXPECT_NEAR(set.irradiance_error, exact, 0.05 * exact);
+}
+
 TEST(MaxError, NoSmallerCountOfTheCutsKeepsIt) {
+    // Few lights, where hardly a count can be skipped, and more than the first 64 cuts have.
     const Image image = noise(32, 16, 33);
     for (const LightMethod method : {LightMethod::median, LightMethod::variance}) {
-        LightRequest request;
-        request.method = method;
-        request.max_error = 0.1;
-        const LightSet set = cutLights(image, request, 2);
-        EXPECT_LE(set.irradiance_error, 0.1);
-        ASSERT_GT(set.lights.size(), 4u);
-        for (int count = 1; count < static_cast<int>(set.lights.size()); ++count) {
-            EXPECT_GT(lightsOfProbe(image, method, count).irradiance_error, 0.1)
-                << methodName(method) << " " << count << " of " << set.lights.size();
+        for (const double wanted : {0.1, 0.01}) {
+            LightRequest request;
+            request.method = method;
+            request.max_error = wanted;
+            const LightSet set = cutLights(image, request, 2);
+            const int found = static_cast<int>(set.lights.size());
+            ASSERT_GT(found, wanted == 0.1 ? 4 : 64);
+            EXPECT_LE(set.irradiance_error, wanted);
+            EXPECT_NEAR(lightsOfProbe(image, method, found).irradiance_error, set.irradiance_error,
+                        1e-9);
+            for (int count = 1; count < found; ++count) {
+                EXPECT_GT(lightsOfProbe(image, method, count).irradiance_error, wanted)
+                    << methodName(method) << " " << count << " of " << found;
+            }
         }
-        const int count = static_cast<int>(set.lights.size());
-        EXPECT_NEAR(lightsOfProbe(image, method, count).irradiance_error, set.irradiance_error,
-                    1e-9);
     }
+}
+
+TEST(MaxError, TellsHowFarTheSearchHasCome) {
+    const Image image = noise(256, 128, 33);
+    std::vector<double> told;
+    LightRequest request;
+    request.max_error =
+        0.98 * lightsOfProbe(image, LightMethod::median, kMostLights).irradiance_error;
+    request.progress = [&](double done) { told.push_back(done); };
+    EXPECT_THROW(cutLights(image, request, 2), Error);
+    ASSERT_GT(told.size(), 20u);
+    EXPECT_TRUE(std::ranges::is_sorted(told, std::less_equal())); // each is told once
+    EXPECT_LT(told[0], 0.1);
+    EXPECT_EQ(told.back(), 1); // wipes the line
 }
 
 TEST(MaxError, ThatPixelsCannotGiveIsRefused) {
