@@ -41,8 +41,8 @@ void writeChunk(OutputFile& file, std::string_view type, std::string_view data) 
 }
 
 /// Filter 1, "sub": differences from the pixel to the left.
-void filterSub(const std::uint8_t* row, std::size_t count, std::size_t channels,
-               std::uint8_t* out) {
+void filterSub(const std::uint8_t* __restrict row, std::size_t count, std::size_t channels,
+               std::uint8_t* __restrict out) {
     *out++ = 1;
     std::copy_n(row, channels, out);
     for (std::size_t i = channels; i < count; ++i) {

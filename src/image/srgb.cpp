@@ -1,9 +1,11 @@
 #include "image/srgb.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 namespace ibl {
 namespace {
@@ -14,44 +16,46 @@ double decode(double v) {
 
 /// Rounding without a power or a branch a pixel: the upper bits of a float choose a cell, 128 an
 /// octave, which has room for no more than one step from a code to the next (the last octave has
-/// 0.66 of them). Values below 2^-13 encode to less than half a code.
+/// 0.66 of them); added to the cell, the lower bits carry into the code from the step on. Values
+/// below 2^-13 encode to less than half a code.
 class RoundingTable {
 public:
     RoundingTable() {
-        std::array<float, 257> starts{}; // the least float that rounds to each code
+        std::array<std::uint32_t, 257> starts{}; // the least float that rounds to each code
         for (std::size_t c = 1; c < 256; ++c) {
             const double exact = decode((static_cast<double>(c) - 0.5) / 255);
-            starts[c] = static_cast<float>(exact);
-            if (starts[c] < exact) starts[c] = std::nextafter(starts[c], 2.0F);
+            float start = static_cast<float>(exact);
+            if (start < exact) start = std::nextafter(start, 2.0F);
+            starts[c] = std::bit_cast<std::uint32_t>(start);
         }
-        starts[256] = 2;
+        starts[256] = std::bit_cast<std::uint32_t>(2.0F);
         std::uint32_t code = 0;
         for (std::uint32_t b = kFirst; b < kEnd; ++b) {
-            const float least = std::bit_cast<float>(b << kShift);
+            const std::uint32_t least = b << kShift, beyond = (b + 1) << kShift;
             while (least >= starts[code + 1])
                 ++code;
-            cells_[b - kFirst] = {starts[code + 1], code};
+            const std::uint32_t step = starts[code + 1];
+            cells_[b - kFirst] = (code << kShift) + (step < beyond ? beyond - step : 0);
         }
     }
 
     std::uint8_t code(float linear) const {
-        linear = linear > kLeast ? linear : kLeast; // so is NaN
-        linear = linear < kMost ? linear : kMost;
-        const Cell& cell = cells_[(std::bit_cast<std::uint32_t>(linear) >> kShift) - kFirst];
-        return static_cast<std::uint8_t>(cell.code + (linear >= cell.step));
+        // As integers, in the same order, what is clipped costs no branch.
+        auto bits = std::bit_cast<std::int32_t>(linear);
+        bits &= -static_cast<std::int32_t>(bits <= kInfinity); // NaN is 0
+        bits = std::min(std::max(bits, kLeast), kMost);
+        const std::uint32_t lower = bits & ((1 << kShift) - 1);
+        return static_cast<std::uint8_t>((cells_[(bits >> kShift) - kFirst] + lower) >> kShift);
     }
 
 private:
     static constexpr int kShift = 23 - 7;
-    static constexpr float kLeast = 0x1p-13F, kMost = 0x1.fffffep-1F; // code 0 and code 255
-    static constexpr std::uint32_t kFirst = std::bit_cast<std::uint32_t>(kLeast) >> kShift;
-    static constexpr std::uint32_t kEnd = std::bit_cast<std::uint32_t>(1.0F) >> kShift;
+    static constexpr auto kInfinity = std::bit_cast<std::int32_t>(HUGE_VALF);
+    static constexpr auto kLeast = std::bit_cast<std::int32_t>(0x1p-13F);      // code 0
+    static constexpr auto kMost = std::bit_cast<std::int32_t>(0x1.fffffep-1F); // code 255
+    static constexpr std::uint32_t kFirst = kLeast >> kShift, kEnd = (kMost >> kShift) + 1;
 
-    struct Cell {
-        float step;         ///< from which the code is one more
-        std::uint32_t code; ///< of the cell's least float
-    };
-    std::array<Cell, kEnd - kFirst> cells_{};
+    std::array<std::uint32_t, kEnd - kFirst> cells_{};
 };
 
 const RoundingTable& roundingTable() {
@@ -73,7 +77,8 @@ std::uint8_t linearToSrgb8(float linear) {
     return roundingTable().code(linear);
 }
 
-void linearToSrgb8(const float* linear, std::size_t count, std::uint8_t* codes) {
+void linearToSrgb8(const float* __restrict linear, std::size_t count,
+                   std::uint8_t* __restrict codes) {
     const RoundingTable& table = roundingTable();
     for (std::size_t i = 0; i < count; ++i)
         codes[i] = table.code(linear[i]);
