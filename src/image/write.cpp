@@ -22,6 +22,10 @@ std::string formatOf(const std::string& path, const WriteOptions& options) {
     if (format.starts_with('.')) format.erase(0, 1);
     std::transform(format.begin(), format.end(), format.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    std::error_code ignored;
+    if (format.empty() && std::filesystem::is_directory(path, ignored)) {
+        throw Error(ExitCode::usage, path + ": is a folder; name a file in it");
+    }
     if (format.empty()) {
         throw Error(ExitCode::usage,
                     (path == "-" ? "standard output" : path) +

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 namespace ibl {
@@ -198,8 +199,12 @@ void Renderer::State::place(const Turn& turn, const Placement& placement) {
     if (lighting) {
         lighting->place(*light_scene, turn, similarity);
         const double lowest = lowestPoint(light_scene->object, placement);
-        if (ground && ground->height > lowest + 1e-5 * similarity.scale * extent.radius)
-            throw usage("the ground cuts the object; lower it to " + std::to_string(lowest));
+        if (ground && ground->height > lowest + 1e-5 * similarity.scale * extent.radius) {
+            char text[80];
+            std::snprintf(text, sizeof text, "the ground cuts the object; lower it to %.6g",
+                          lowest);
+            throw usage(text);
+        }
     }
     if (lit) {
         const M33d& t = similarity.turn;

@@ -197,6 +197,9 @@ TEST(Contract, UnknownOptionsValuesAndCommands) {
     refused({"convert", "builtin:sky", "-o", "a.exr", "--quiet", "--verbose"}, "--quiet");
     refused({"convert", "builtin:sky"}, "--output");
     refused({"convert", "builtin:sky", "-o", "-", "--format", "exr"}, "layout");
+    for (const char* command : {"convert", "tonemap"})
+        refused({command, "builtin:sky", "-o", "a.png", "--compression", "zip"}, "--compression");
+    refused({"tonemap", "builtin:sky", "-o", "."}, "is a folder");
     EXPECT_TRUE(scratch.names().empty());
 }
 
