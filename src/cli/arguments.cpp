@@ -165,11 +165,6 @@ WriteOptions writeOptions(const ImageOutputOptions& output, const CommonOptions&
                                              " has its own pixel type; leave "
                                              "out --type, or write .exr");
         }
-        if (!output.compression.empty() && format == own) {
-            throw Error(ExitCode::usage, output.output +
-                                             ": only OpenEXR files have a compression to "
-                                             "choose; leave out --compression");
-        }
     }
     options.compression = output.compression;
     options.format = output.format;

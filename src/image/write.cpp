@@ -43,6 +43,12 @@ bool isTiff(const std::string& format) {
     return format == "tif" || format == "tiff";
 }
 
+void requireNoCompression(const std::string& path, const WriteOptions& options) {
+    if (options.compression.empty()) return;
+    throw Error(ExitCode::usage, path + ": only OpenEXR files have a compression to choose; leave "
+                                        "out --compression, or write .exr");
+}
+
 std::string counted(std::size_t count, const std::string& one, const std::string& many) {
     return std::to_string(count) + (count == 1 ? one : many);
 }
@@ -54,6 +60,7 @@ void requireFormat(const std::string& path, const WriteOptions& options) {
     const bool own = format == "exr" || format == "png" || format == "ktx2" || format == "dds" ||
                      isRadiance(format);
     if (!own) requireOiioWriter(path, format);
+    if (format != "exr") requireNoCompression(path, options);
 }
 
 WriteLosses& WriteLosses::operator+=(const WriteLosses& other) {
@@ -73,10 +80,7 @@ bool isCubeContainer(const std::string& path, const WriteOptions& options) {
 
 WriteLosses writeCubeMap(OutputSet& outputs, const std::string& path,
                          std::span<const Image* const> levels, const WriteOptions& options) {
-    if (!options.compression.empty()) {
-        throw Error(ExitCode::usage, path + ": only OpenEXR files have a compression to choose; "
-                                            "leave it out, or write .exr");
-    }
+    requireNoCompression(path, options);
     OutputFile& file = outputs.add(path);
     return formatOf(path, options) == "dds" ? writeDds(file, levels, options.type)
                                             : writeKtx2(file, levels, options.type);
@@ -93,9 +97,11 @@ WriteLosses writeImage(OutputSet& outputs, const std::string& path, const Image&
                                          " files hold cube maps, not this image; write another "
                                          "format");
     }
-    if (format != "exr" && !(options.compression.empty() && options.envmap.empty())) {
-        throw Error(ExitCode::usage, path + ": only OpenEXR files have a compression or envmap to "
-                                            "choose; leave it out, or write .exr");
+    if (format != "exr") requireNoCompression(path, options);
+    if (format != "exr" && !options.envmap.empty()) {
+        throw Error(ExitCode::usage, path +
+                                         ": only OpenEXR files have an envmap to choose; leave it "
+                                         "out, or write .exr");
     }
     if (format != "exr" && !options.extra.empty()) {
         throw Error(ExitCode::usage, path + ": only OpenEXR files have further channels; write "

@@ -57,8 +57,8 @@ struct WriteLosses {
 WriteLosses writeImage(OutputSet& outputs, const std::string& path, const Image& image,
                        const WriteOptions& options = {});
 
-/// Throws what writeImage would throw, whatever the image, for a file whose format nothing says or
-/// nothing writes: before the image is made.
+/// Throws what writeImage would throw, whatever the image, for a file whose format nothing says,
+/// nothing writes or has no compression to choose: before the image is made.
 void requireFormat(const std::string& path, const WriteOptions& options);
 
 /// Whether that file is a KTX 2 or DDS container, which holds a whole cube map: by

@@ -1,15 +1,12 @@
-// What glTF 2.0 says of textures and sparse accessors, on a square with an image.
+// What glTF 2.0 says of materials and textures, on a square with an image.
+#include "gltf_support.h"
 #include "scene_support.h"
 
-#include "core/error.h"
 #include "render/object_file.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <numbers>
 
 namespace ibl {
@@ -52,70 +49,10 @@ std::string fromBase64(const std::string& text) {
     return bytes;
 }
 
-template <class T>
-std::string packed(const std::vector<T>& values) {
-    std::string bytes(values.size() * sizeof(T), '\0');
-    std::memcpy(bytes.data(), values.data(), bytes.size());
-    return bytes;
-}
-
-// The square from (-1, -1, 0) to (1, 1, 0), seen from +Z, corners counter-clockwise from the lower
-// left one: in its buffer 48 bytes of positions, 48 of normals, 32 of texture coordinates, 12 of
-// indices, then `extra`.
-struct Square {
-    std::string material = "{}";
-    std::string more{}; ///< members of the document
-    std::vector<float> texcoords{0, 1, 1, 1, 1, 0, 0, 0};
-    std::string extra{}, views{};
-    std::string positions = R"("bufferView":0)", indices = R"("bufferView":3)";
-    std::string nodes = R"({"mesh":0})";
-};
-constexpr int kExtraAt = 140;
-
 std::string image(const std::string& kind, const std::string& base64, const char* sampler = "") {
     return R"(,"images":[{"uri":"data:image/)" + kind + ";base64," + base64 +
            R"("}],"textures":[{"source":0)" + sampler + "}]";
 }
-
-class Gltf : public testing::Test {
-protected:
-    Gltf()
-        : folder_(testing::TempDir() + "ibl_gltf_" +
-                  testing::UnitTest::GetInstance()->current_test_info()->name()) {
-        std::filesystem::create_directories(folder_);
-    }
-    ~Gltf() override { std::filesystem::remove_all(folder_); }
-
-    void write(const std::string& name, const std::string& bytes) const {
-        std::ofstream(folder_ + "/" + name, std::ios::binary) << bytes;
-    }
-    ObjectFile read(const Square& square) const {
-        const std::string buffer = packed<float>({-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0}) +
-                                   packed<float>({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}) +
-                                   packed(square.texcoords) +
-                                   packed<std::uint16_t>({0, 1, 2, 0, 2, 3}) + square.extra;
-        write("square.bin", buffer);
-        write("a.gltf", R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[)" +
-                            square.nodes +
-                            R"(],"meshes":[{"primitives":[{"attributes":{"POSITION":0,"NORMAL":1,)"
-                            R"("TEXCOORD_0":2},"indices":3,"material":0}]}],"materials":[)" +
-                            square.material + R"(],"accessors":[{"componentType":5126,"count":4,)" +
-                            R"("type":"VEC3",)" + square.positions +
-                            R"(},{"componentType":5126,"count":4,"type":"VEC3","bufferView":1},)"
-                            R"({"componentType":5126,"count":4,"type":"VEC2","bufferView":2},)"
-                            R"({"componentType":5123,"count":6,"type":"SCALAR",)" +
-                            square.indices +
-                            R"(}],"bufferViews":[{"buffer":0,"byteLength":48},)"
-                            R"({"buffer":0,"byteOffset":48,"byteLength":48},)"
-                            R"({"buffer":0,"byteOffset":96,"byteLength":32},)"
-                            R"({"buffer":0,"byteOffset":128,"byteLength":12})" +
-                            square.views + R"(],"buffers":[{"uri":"square.bin","byteLength":)" +
-                            std::to_string(buffer.size()) + "}]" + square.more + "}");
-        return readObject(folder_ + "/a.gltf");
-    }
-
-    const std::string folder_;
-};
 
 double decoded(int code) { // IEC 61966-2-1
     const double v = code / 255.0;
@@ -346,77 +283,6 @@ TEST_F(Gltf, TexturesGoOnAsTheirSamplersSay) {
                        image("png", kFourPng)};
     EXPECT_EQ(read(plain).object.textures.at(0).across, Wrap::repeat);
     EXPECT_EQ(read(plain).object.textures.at(0).down, Wrap::repeat);
-}
-
-// A child turned by 45 degrees about Z under a stretched, mirrored parent: sheared. Its turn about
-// X comes first, so that the normal is sheared, too.
-TEST_F(Gltf, NormalsStaySquareToShearedAndMirroredFaces) {
-    Square square;
-    square.nodes = R"({"scale":[1,2,-3],"translation":[0,0,7],"children":[1]},)"
-                   R"({"rotation":[0,0,0.38268343236508977,0.92387953251128674],"children":[2]},)"
-                   R"({"rotation":[0.38268343236508977,0,0,0.92387953251128674],"mesh":0})";
-    const ObjectFile file = read(square);
-    const Mesh& mesh = *file.object.mesh;
-    // About X: x to (1, 0, 0), y to (0, s, s), z to (0, -s, s). About Z: these to (s, s, 0),
-    // (-1/2, 1/2, s), (1/2, -1/2, s). By the parent (s, 2 s, 0), (-1/2, 1, -3 s); the normal goes
-    // by the inverse, to (1/2, -1/4, -s/3).
-    const double s = std::sqrt(0.5);
-    const V3d x(s, 2 * s, 0), y(-0.5, 1, -3 * s), shift(0, 0, 7);
-    const V3d normal = V3d(0.5, -0.25, -s / 3).normalized();
-    EXPECT_NEAR(normal.dot(x), 0, 1e-12);
-    EXPECT_NEAR(normal.dot(y), 0, 1e-12);
-    ASSERT_EQ(mesh.positions.size(), 4u);
-    EXPECT_LT((V3d(mesh.positions[0]) - (shift - x - y)).length(), 1e-6);
-    EXPECT_LT((V3d(mesh.positions[1]) - (shift + x - y)).length(), 1e-6);
-    for (const V3f& n : mesh.normals)
-        EXPECT_LT((V3d(n) - normal).length(), 1e-6) << n;
-    ASSERT_EQ(mesh.indices.size(), 6u);
-    for (std::size_t i = 0; i < 6; i += 3) { // counter-clockwise, seen from outside
-        const V3f& a = mesh.positions[mesh.indices[i]];
-        const V3f &b = mesh.positions[mesh.indices[i + 1]],
-                  &c = mesh.positions[mesh.indices[i + 2]];
-        EXPECT_LT((V3d((b - a).cross(c - a)).normalized() - normal).length(), 1e-6) << i;
-    }
-}
-
-TEST_F(Gltf, SparsePositionsReplaceWhatThereIsOrZeros) {
-    const auto sparse = [](const char* base, int count) {
-        return std::string(base) + R"("sparse":{"count":)" + std::to_string(count) +
-               R"(,"indices":{"bufferView":4,"componentType":5123},"values":{"bufferView":5}})";
-    };
-    Square square;
-    square.extra =
-        packed<std::uint16_t>({1, 2, 3, 0}) + packed<float>({2, -1, 0, 1, 3, 0, -1, 1, 0.5F});
-    square.views = R"(,{"buffer":0,"byteOffset":140,"byteLength":8})"
-                   R"(,{"buffer":0,"byteOffset":148,"byteLength":36})";
-    const V3f one(2, -1, 0), two(1, 3, 0), three(-1, 1, 0.5F);
-    square.positions = sparse("", 3);
-    EXPECT_EQ(read(square).object.mesh->positions, (std::vector{V3f(0), one, two, three}));
-    square.positions = sparse(R"("bufferView":0,)", 2);
-    EXPECT_EQ(read(square).object.mesh->positions,
-              (std::vector{V3f(-1, -1, 0), one, two, V3f(-1, 1, 0)}));
-    square.positions = R"("byteOffset":0)"; // neither a view nor sparse
-    EXPECT_THROW(read(square), Error);
-}
-
-TEST_F(Gltf, SparseIndicesReplaceCorners) {
-    const auto drawn = [&](int code, const std::string& place) {
-        Square square;
-        square.extra = place + packed<std::uint16_t>({1});
-        const std::string size = std::to_string(place.size());
-        square.views = R"(,{"buffer":0,"byteOffset":140,"byteLength":)" + size +
-                       R"(},{"buffer":0,"byteOffset":)" + std::to_string(140 + place.size()) +
-                       R"(,"byteLength":2})";
-        square.indices = R"("bufferView":3,"sparse":{"count":1,"indices":{"bufferView":4,)"
-                         R"("componentType":)" +
-                         std::to_string(code) + R"(},"values":{"bufferView":5}})";
-        return read(square).object.mesh->indices;
-    };
-    const std::vector<std::uint32_t> expected{0, 1, 2, 0, 1, 3};
-    EXPECT_EQ(drawn(5121, packed<std::uint8_t>({4})), expected);
-    EXPECT_EQ(drawn(5123, packed<std::uint16_t>({4})), expected);
-    EXPECT_EQ(drawn(5125, packed<std::uint32_t>({4})), expected);
-    EXPECT_THROW(drawn(5123, packed<std::uint16_t>({6})), Error); // no such place
 }
 
 } // namespace
