@@ -38,18 +38,33 @@ std::vector<Arc> outlineOf(const MapExtent& map, int x, int y, double scale) {
     const V2d corners[4] = {low, {high.x, low.y}, high, {low.x, high.y}};
     for (int side = 0; side < 4; ++side) {
         const V2d begin = corners[side], step = corners[(side + 1) % 4] - begin;
-        const auto place = [&](double at) {
-            return texelPlace(map, x, y, (begin + step * (at + 0.5)) * scale);
+        const auto place = [&](double t) {
+            return texelPlace(map, x, y, (begin + step * t) * scale);
         };
-        V3d from = place(-0.5);
-        const double length = Arc{from, place(0), place(0.5)}.length();
-        // Sides of the octahedral map's texels may have a fold in their middle.
-        const int least = map.layout == Layout::octahedral ? 4 : 1;
-        const int pieces = std::max(least, static_cast<int>(std::ceil(length / kLongest)));
-        for (int k = 0; k < pieces; ++k) {
-            const V3d to = place(static_cast<double>(k + 1) / pieces - 0.5);
-            outline.push_back({from, place((k + 0.5) / pieces - 0.5), to});
-            from = to;
+        // In parts without a kink.
+        const int along = side % 2;
+        const V2d centre(x + 0.5, y + 0.5);
+        const double start = centre[along] + begin[along] * scale;
+        std::vector<double> ends{1.0};
+        for (const double kink :
+             kinksAlong(map.layout, map.width, centre[1 - along] + begin[1 - along] * scale)) {
+            const double t = (kink - start) / (step[along] * scale);
+            if (t > 0 && t < 1) ends.push_back(t);
+        }
+        std::ranges::sort(ends);
+        double low_t = 0;
+        for (const double high_t : ends) {
+            const double middle = 0.5 * (low_t + high_t);
+            V3d from = place(low_t);
+            const double length = Arc{from, place(middle), place(high_t)}.length();
+            const int pieces = std::max(1, static_cast<int>(std::ceil(length / kLongest)));
+            const double piece = (high_t - low_t) / pieces;
+            for (int k = 0; k < pieces; ++k) {
+                const V3d to = place(low_t + (k + 1) * piece);
+                outline.push_back({from, place(low_t + (k + 0.5) * piece), to});
+                from = to;
+            }
+            low_t = high_t;
         }
     }
     return outline;

@@ -330,10 +330,11 @@ void requireReachable(std::span<const Plan> plans, double max_error) {
         plans, [&](const Plan& plan) { return std::ranges::any_of(plan.lobes, narrow); });
     if (!any || least < max_error) return;
     char text[160];
-    std::snprintf(text, sizeof text,
-                  "error: %g cannot be met: of lobes as narrow as this the bound of the relative "
-                  "RMSE is %g at least; allow a larger error",
-                  max_error, least);
+    std::snprintf(
+        text, sizeof text,
+        "--max-error %g cannot be met: of lobes as narrow as this the bound of the relative "
+        "RMSE is %g at least; allow a larger error",
+        max_error, least);
     throw Error(ExitCode::accuracy, text);
 }
 

@@ -44,11 +44,23 @@ Footprint footprintFor(double lobe_diameter, double texel, int degree) {
                         degree};
     if (footprint.scale > 0) {
         const double extent = footprint.scale * texel;
-        const double for_lobe = 1 + 4 * extent / lobe_diameter;
+        const double for_lobe = 2 + 5 * extent / lobe_diameter;
         const double for_waves = 2 + 1.2 * extent * degree / kPi; // Gauss: pi points a wave
         footprint.samples = std::max(2, static_cast<int>(std::ceil(std::min(for_lobe, for_waves))));
     }
     return footprint;
+}
+
+/// Takes [from, to] in the parts that those of `kinks` between leave.
+template <class TakePart>
+void forParts(double from, double to, std::vector<double> kinks, const TakePart& takePart) {
+    std::ranges::sort(kinks);
+    for (const double kink : kinks) {
+        if (kink <= from || kink >= to) continue;
+        takePart(from, kink);
+        from = kink;
+    }
+    takePart(from, to);
 }
 
 /// Appends the points of texel (x, y), which looks along `centre`, by the rule: the texel is a
@@ -80,14 +92,27 @@ void addTexel(Layout layout, int width, int height, int x, int y, const V3d& cen
             add(ballDirection(layout, point.at), point.area);
     } else {
         const TexelPart own = ownPart(layout, width, height, x, y);
-        for (std::size_t b = 0; b < rule.nodes.size(); ++b) {
+        const V2d centre_place(x + 0.5, y + 0.5);
+        const V2d low = centre_place + own.low * footprint_scale;
+        const V2d high = centre_place + own.high * footprint_scale;
+        // Gauss points see no kink within a part.
+        std::vector<double> kinks = kinksAlong(layout, width, low.y);
+        for (const double kink : kinksAlong(layout, width, high.y))
+            kinks.push_back(kink);
+        forParts(low.x, high.x, kinks, [&](double left, double right) {
             for (std::size_t a = 0; a < rule.nodes.size(); ++a) {
-                const V2d t(0.5 * (1 + rule.nodes[a]), 0.5 * (1 + rule.nodes[b]));
-                const V2d offset = (own.low + (own.high - own.low) * t) * footprint_scale;
-                add(directionAt(layout, width, height, V2d(x + 0.5, y + 0.5) + offset),
-                    rule.weights[a] * rule.weights[b]);
+                const double px = left + (right - left) * 0.5 * (1 + rule.nodes[a]);
+                const auto takePart = [&](double top, double bottom) {
+                    const double area = (right - left) * (bottom - top) * rule.weights[a];
+                    for (std::size_t b = 0; b < rule.nodes.size(); ++b) {
+                        const double py = top + (bottom - top) * 0.5 * (1 + rule.nodes[b]);
+                        add(directionAt(layout, width, height, V2d(px, py)),
+                            area * rule.weights[b]);
+                    }
+                };
+                forParts(low.y, high.y, kinksAlong(layout, width, px), takePart);
             }
-        }
+        });
     }
     for (std::size_t i = first; i < points.share.size(); ++i)
         points.share[i] /= total;
@@ -105,6 +130,12 @@ TexelPart ownPart(Layout layout, int width, int height, int x, int y) {
     if (rows > 1 && y % rows == 0) part.low.y = 0;
     if (rows > 1 && y % rows == rows - 1) part.high.y = 0;
     return part;
+}
+
+std::vector<double> kinksAlong(Layout layout, int width, double place) {
+    if (layout != Layout::octahedral) return {};
+    const double middle = 0.5 * width, edge = middle - std::abs(place - middle);
+    return {middle - edge, middle, middle + edge};
 }
 
 double partSolidAngle(Layout layout, int width, int height, int x, int y) {

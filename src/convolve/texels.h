@@ -60,6 +60,11 @@ struct TexelPart {
 };
 TexelPart ownPart(Layout layout, int width, int height, int x, int y);
 
+/// Where along a row or a column of the image, `place` texels from its first edge, directions have
+/// a kink: on the edges of the octahedral map's octahedron, X = c, Y = c and |X - c| + |Y - c| = c,
+/// c the map's middle.
+std::vector<double> kinksAlong(Layout layout, int width, double place);
+
 /// Solid angle of that part: texelSolidAngle, but for OpenEXR's lat-long, where the first and the
 /// last texel of a row are one, and each counts as half of it. Any layout.
 double partSolidAngle(Layout layout, int width, int height, int x, int y);

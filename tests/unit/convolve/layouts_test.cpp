@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace ibl {
 namespace {
@@ -67,6 +68,32 @@ TEST(PrefilterLayouts, NarrowLobesKeepALoneSunsEnergyInEveryLayout) {
                     << row;
             }
         }
+    }
+}
+
+/// The octahedral map's directions have kinks where the octahedron has edges, on the equator, say.
+TEST(PrefilterLayouts, OctahedralTexelsAcrossEdgesKeepTheAskedError) {
+    Image probe(96, 48);
+    std::ranges::fill(probe.pixels, 0.1f);
+    for (const auto& [x, y] : {std::pair{10, 23}, {37, 24}, {60, 22}})
+        std::fill_n(probe.at(x, y), 3, 1e4f);
+    for (const int size : {12, 25}) {
+        const PrefilterRequest request{{Kernel::phong, 200}, Layout::octahedral, size};
+        PrefilterOptions reference;
+        reference.reference = true;
+        const Panorama latlong{Layout::latlong, probe};
+        const Image map = prefilter(latlong, {&request, 1}, {})[0].map.image;
+        const Image exact = prefilter(latlong, {&request, 1}, reference)[0].map.image;
+        double error = 0, norm = 0;
+        for (int y = 0; y < size; ++y) {
+            for (int x = 0; x < size; ++x) {
+                const double weight = texelSolidAngle(request.layout, size, size, x, y);
+                const double a = map.at(x, y)[1], b = exact.at(x, y)[1];
+                error += weight * (a - b) * (a - b);
+                norm += weight * b * b;
+            }
+        }
+        EXPECT_LT(std::sqrt(error / norm), 1e-4) << size;
     }
 }
 
