@@ -51,16 +51,18 @@ Footprint footprintFor(double lobe_diameter, double texel, int degree) {
     return footprint;
 }
 
-/// Takes [from, to] in the parts that those of `kinks` between leave.
+/// Takes [0, 1], which stands for [from, to], in the parts that those of `kinks` between leave.
 template <class TakePart>
 void forParts(double from, double to, std::vector<double> kinks, const TakePart& takePart) {
     std::ranges::sort(kinks);
+    double begin = 0;
     for (const double kink : kinks) {
         if (kink <= from || kink >= to) continue;
-        takePart(from, kink);
-        from = kink;
+        const double end = (kink - from) / (to - from);
+        takePart(begin, end);
+        begin = end;
     }
-    takePart(from, to);
+    takePart(begin, 1.0);
 }
 
 /// Appends the points of texel (x, y), which looks along `centre`, by the rule: the texel is a
@@ -94,18 +96,20 @@ void addTexel(Layout layout, int width, int height, int x, int y, const V3d& cen
         const TexelPart own = ownPart(layout, width, height, x, y);
         const V2d centre_place(x + 0.5, y + 0.5);
         const V2d low = centre_place + own.low * footprint_scale;
-        const V2d high = centre_place + own.high * footprint_scale;
+        const V2d high = centre_place + own.high * footprint_scale; // of tiny footprints the same
         // Gauss points see no kink within a part.
         std::vector<double> kinks = kinksAlong(layout, width, low.y);
         for (const double kink : kinksAlong(layout, width, high.y))
             kinks.push_back(kink);
         forParts(low.x, high.x, kinks, [&](double left, double right) {
             for (std::size_t a = 0; a < rule.nodes.size(); ++a) {
-                const double px = left + (right - left) * 0.5 * (1 + rule.nodes[a]);
+                const double s = left + (right - left) * 0.5 * (1 + rule.nodes[a]);
+                const double px = low.x + (high.x - low.x) * s;
                 const auto takePart = [&](double top, double bottom) {
                     const double area = (right - left) * (bottom - top) * rule.weights[a];
                     for (std::size_t b = 0; b < rule.nodes.size(); ++b) {
-                        const double py = top + (bottom - top) * 0.5 * (1 + rule.nodes[b]);
+                        const double t = top + (bottom - top) * 0.5 * (1 + rule.nodes[b]);
+                        const double py = low.y + (high.y - low.y) * t;
                         add(directionAt(layout, width, height, V2d(px, py)),
                             area * rule.weights[b]);
                     }
