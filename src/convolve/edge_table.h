@@ -11,9 +11,10 @@
 //
 //     B(d, s) = int_0^s Phi(r) ds'
 //
-// is what flows between half-planes, where curvature does not count. Both vary over the lobe's
-// width near the point and in proportion to the distance farther out, so the table's nodes are
-// evenly spaced in log(1 + d / width) and log(1 + s / width).
+// is what flows between half-planes, where curvature does not count. A varies over the lobe's width
+// near the point and in proportion to the distance farther out, so the table's nodes are evenly
+// spaced in log(1 + d / width) and log(1 + s / width). B, of Phi's logarithm, varies over d and s
+// however wide the lobe is: of lobes wider than the edges the edges' length is the width.
 #pragma once
 
 #include <algorithm>
@@ -26,8 +27,8 @@ namespace ibl {
 class EdgeTable {
 public:
     /// `mass_within` is M(t), `potential` Phi(t), which is 0 from `reach` on, t in radians. Of
-    /// lines nearer than `width` the integrals vary over `width`. Asked for are |d| and |s| up to
-    /// `extent`, and `nodes` to a unit of the logarithms.
+    /// lines nearer than `width` the integrals are taken to vary over `width`. Asked for are |d| and
+    /// |s| up to `extent`, and `nodes` to a unit of the logarithms.
     EdgeTable(const std::function<double(double)>& mass_within,
               const std::function<double(double)>& potential, double width, double reach,
               double extent, double nodes);

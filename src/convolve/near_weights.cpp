@@ -283,7 +283,8 @@ NearField makeNearField(const NearKernel& kernel, const NearRules& rules, int pr
             RadialTable(psi, x0, 4, constant),
             RadialTable(swirl, x0, 4, constant),
             RadialTable(outer_swirl, x0, x1, zero),
-            EdgeTable(within, at_angle, kernel.width, reach, 6 * rules.flat, rules.nodes),
+            EdgeTable(within, at_angle, std::min(kernel.width, rules.flat), reach, 6 * rules.flat,
+                      rules.nodes),
             probe_width,
             probe_height};
 }
