@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "image/exr_chunks.h"
 #include "image/exr_headers.h"
 #include "image/exr_layers.h"
 
@@ -78,6 +79,11 @@ struct Channels {
     std::vector<std::string> names; ///< those of colour, then alpha
     Imf::PixelType type = Imf::FLOAT;
     bool alpha = false;
+
+    /// Among a pixel's floats: a single colour goes to the first, alpha always to the fourth.
+    std::size_t place(std::size_t channel) const {
+        return alpha && channel + 1 == names.size() ? 3 : channel;
+    }
 };
 
 Channels channelsOf(const Imf::Header& header, const ExrChoice& choice, bool alpha,
@@ -148,12 +154,8 @@ void setFloats(Imf::InputPart& part, const Channels& channels, float* pixel, int
     const std::size_t x_stride = pixel_floats * sizeof(float);
     const std::size_t y_stride = row_pixels * x_stride;
     for (std::size_t c = 0; c < channels.names.size(); ++c) {
-        // A single colour goes to the first channel, alpha always to the fourth.
-        const bool is_alpha = channels.alpha && c + 1 == channels.names.size();
-        const std::size_t place = is_alpha ? 3 : c;
-        buffer.insert(channels.names[c],
-                      Imf::Slice(Imf::FLOAT, sliceBase(pixel + place, x, y, x_stride, y_stride),
-                                 x_stride, y_stride));
+        char* base = sliceBase(pixel + channels.place(c), x, y, x_stride, y_stride);
+        buffer.insert(channels.names[c], Imf::Slice(Imf::FLOAT, base, x_stride, y_stride));
     }
     part.setFrameBuffer(buffer);
 }
@@ -171,6 +173,20 @@ void forRowBlocks(const Target& target, std::size_t pixel_bytes, const ReadRows&
         if (last == target.shared.max.y) break;
         y = last + 1;
     }
+}
+
+/// By chunks, if all of the data window is wanted.
+bool readAllChunks(const Source& source, const Imf::Header& header, const ExrChoice& choice,
+                   const Channels& channels, int threads, Target& target) {
+    if (target.shared != target.data) return false;
+    ExrPixels pixels{channels.names,
+                     {},
+                     target.at(target.data.min.x, target.data.min.y),
+                     static_cast<std::size_t>(target.image.channels),
+                     target.image.rowFloats()};
+    for (std::size_t c = 0; c < channels.names.size(); ++c)
+        pixels.place.push_back(channels.place(c));
+    return readExrChunks(source, header, choice.part, pixels, threads);
 }
 
 void readChannels(Imf::MultiPartInputFile& file, const ExrChoice& choice, const Channels& channels,
@@ -294,7 +310,8 @@ void describe(const std::vector<Imf::Header>& parts, const ExrChoice& choice,
     }
 }
 
-ImageFile readParts(Imf::IStream& stream, const std::string& name, const ReadOptions& options) {
+ImageFile readParts(Imf::IStream& stream, const Source& source, const ReadOptions& options) {
+    const std::string& name = source.name;
     const std::vector<Imf::Header> parts = readExrHeaders(stream, name);
     const ExrChoice choice = chooseExrLayer(parts, options.layer, name);
     const Imf::Header& header = parts[static_cast<std::size_t>(choice.part)];
@@ -319,7 +336,8 @@ ImageFile readParts(Imf::IStream& stream, const std::string& name, const ReadOpt
     if (chroma) {
         readLuminanceChroma(stream, choice, threads, target);
     } else {
-        readChannels(input, choice, channels, target);
+        if (!readAllChunks(source, header, choice, channels, options.threads, target))
+            readChannels(input, choice, channels, target);
         if (choice.channels.size() == 1) spreadGrey(target.image, threads);
     }
     clearOutside(target);
@@ -350,7 +368,7 @@ int exrThreads(int threads) {
 ImageFile readExr(const Source& source, const ReadOptions& options) {
     try {
         const std::unique_ptr<Imf::IStream> stream = openExrStream(source);
-        return readParts(*stream, source.name, options);
+        return readParts(*stream, source, options);
     } catch (const Error&) {
         throw;
     } catch (const std::bad_alloc&) {

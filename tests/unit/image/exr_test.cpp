@@ -9,6 +9,8 @@
 
 #include <Imath/half.h>
 
+#include <cstring>
+
 #include <unistd.h>
 
 namespace ibl::test {
@@ -83,6 +85,62 @@ TEST_F(Exr, HalvesRoundTripBitForBit) {
         const ImageFile file = readImage(path("a.exr"));
         EXPECT_EQ(file.image.pixels, image.pixels) << compression;
         EXPECT_EQ(file.pixel_type, "half");
+    }
+}
+
+/// Chunks are read by OpenEXR's C interface, which has routines of its own for three and four
+/// channels, halves and floats.
+TEST_F(Exr, ChannelsOfAllNumbersAndTypesAreReadExactly) {
+    constexpr int kWidth = 37, kHeight = 53;
+    const auto value = [](int c, int x, int y) { // a half, different everywhere
+        return static_cast<float>(half(0.25F + static_cast<float>(c * 2000 + y * kWidth + x)));
+    };
+    for (const std::string names : {"RGB", "RGBA", "Y", "YA", "RGBZ", "RGBAZ"}) {
+        for (const auto& [type, alpha_type] :
+             {std::pair{Imf::HALF, Imf::HALF}, {Imf::FLOAT, Imf::FLOAT}, {Imf::HALF, Imf::FLOAT}}) {
+            for (const Imf::Compression compression : {Imf::NO_COMPRESSION, Imf::ZIP_COMPRESSION}) {
+                Imf::Header header(kWidth, kHeight);
+                header.compression() = compression;
+                Imf::FrameBuffer buffer;
+                std::vector<std::vector<char>> planes;
+                for (std::size_t c = 0; c < names.size(); ++c) {
+                    const Imf::PixelType t = names[c] == 'A' ? alpha_type : type;
+                    const std::size_t size = t == Imf::HALF ? 2 : 4;
+                    std::vector<char>& plane = planes.emplace_back(kWidth * kHeight * size);
+                    for (int i = 0; i < kWidth * kHeight; ++i) {
+                        const float v = value(static_cast<int>(c), i % kWidth, i / kWidth);
+                        const half h(v);
+                        std::memcpy(plane.data() + static_cast<std::size_t>(i) * size,
+                                    t == Imf::HALF ? static_cast<const void*>(&h) : &v, size);
+                    }
+                    const std::string name(1, names[c]);
+                    header.channels().insert(name, Imf::Channel(t));
+                    buffer.insert(name, Imf::Slice(t, plane.data(), size, kWidth * size));
+                }
+                {
+                    Imf::OutputFile file(path("a.exr").c_str(), header);
+                    file.setFrameBuffer(buffer);
+                    file.writePixels(kHeight);
+                }
+                for (const bool keep_alpha : {false, true}) {
+                    const Image image = readImage(path("a.exr"), {"", keep_alpha}).image;
+                    const std::size_t alpha = names.find('A');
+                    ASSERT_EQ(image.channels, keep_alpha && alpha != names.npos ? 4 : 3);
+                    int wrong = 0;
+                    for (int y = 0; y < kHeight; ++y) {
+                        for (int x = 0; x < kWidth; ++x) {
+                            const float* p = image.at(x, y);
+                            for (int c = 0; c < 3; ++c)
+                                wrong += p[c] != value(names[0] == 'Y' ? 0 : c, x, y);
+                            if (image.channels == 4)
+                                wrong += p[3] != value(static_cast<int>(alpha), x, y);
+                        }
+                    }
+                    EXPECT_EQ(wrong, 0) << names << " " << type << " " << alpha_type << " "
+                                        << compression << " " << keep_alpha;
+                }
+            }
+        }
     }
 }
 
