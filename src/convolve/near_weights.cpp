@@ -160,15 +160,36 @@ void setBlock(const NearField& field, const std::vector<Arc>& outline, const V3d
     weights.weight.assign(static_cast<std::size_t>(weights.rows) * weights.columns, 0.0);
 }
 
-/// Half sides of the parallelogram that a quadrangle is.
-struct HalfSides {
-    V3d a, b;
+/// A texel's mean direction, which lies within the sphere, and the half sides of the parallelogram
+/// that has its second moments.
+struct Moments {
+    V3d mean, a, b;
 };
 
+Moments momentsOf(const std::vector<TexelPoint>& points, const V3d& centre) {
+    Moments moments{V3d(0), V3d(0), V3d(0)};
+    for (const TexelPoint& p : points)
+        moments.mean += p.at * p.share;
+    const V3d side = std::abs(centre.z) < 0.9 ? V3d(0, 0, 1) : V3d(1, 0, 0);
+    const V3d x = side.cross(centre).normalized(), y = centre.cross(x);
+    double xx = 0, xy = 0, yy = 0;
+    for (const TexelPoint& p : points) {
+        const V2d d((p.at - moments.mean).dot(x), (p.at - moments.mean).dot(y));
+        xx += p.share * d.x * d.x;
+        xy += p.share * d.x * d.y;
+        yy += p.share * d.y * d.y;
+    }
+    // The covariance's Cholesky factor; a side's is a third of its half's square.
+    const double l = std::sqrt(3 * xx), m = l > 0 ? 3 * xy / l : 0;
+    moments.a = x * l + y * m;
+    moments.b = y * std::sqrt(std::max(0.0, 3 * yy - m * m));
+    return moments;
+}
+
 /// Marks the pixels that are near and sets the weights of the others, by a rule of four points that
-/// has the second moments of their displacements from the texel, of whose centre no part of it is
-/// farther than `radius`.
-void addFar(Block& block, const V3d& centre, const HalfSides& texel, double radius) {
+/// has the first and second moments of their displacements from the texel, of whose centre no part
+/// of it is farther than `radius`.
+void addFar(Block& block, const V3d& centre, const Moments& texel, double radius) {
     const NearField& field = block.field;
     NearWeights& w = block.weights;
     block.near.assign(w.weight.size(), 0);
@@ -179,7 +200,9 @@ void addFar(Block& block, const V3d& centre, const HalfSides& texel, double radi
     }
     const double half_height = 0.5 * kPi / field.height;
     for (int j = 0; j < w.rows; ++j) {
-        const double theta = 2 * half_height * (w.row + j + 0.5);
+        const double middle = 2 * half_height * (w.row + j + 0.5);
+        // Where a pixel's mean lies: its parallels are the longer the farther from the pole.
+        const double theta = middle + half_height * half_height / (3 * std::tan(middle));
         const double sin = std::sin(theta), cos = std::cos(theta);
         const double half_width = kPi / field.width * sin;
         const double pixel = 2 * std::max(half_height, half_width);
@@ -189,17 +212,18 @@ void addFar(Block& block, const V3d& centre, const HalfSides& texel, double radi
         for (int i = 0; i < w.columns; ++i) {
             const std::size_t at = static_cast<std::size_t>(j * w.columns + i);
             const V2d u = azimuth[static_cast<std::size_t>(i)];
-            const V3d between = V3d(sin * u.x, sin * u.y, cos) - centre;
-            const double chord2 = between.length2();
-            if (chord2 < far * far) {
+            const V3d pixel_centre(sin * u.x, sin * u.y, cos);
+            const double from_centre2 = (pixel_centre - centre).length2();
+            if (from_centre2 < far * far) {
                 block.near[at] = 1;
                 continue;
             }
-            if (chord2 > reach * reach) continue;
+            if (from_centre2 > reach * reach) continue;
             // Along the chord and across it, in the plane between both tangent planes.
-            const double chord = std::sqrt(chord2);
+            const V3d between = pixel_centre - texel.mean;
+            const double chord = between.length();
             const V3d along = between * (1 / chord);
-            const V3d across = V3d(sin * u.x, sin * u.y, cos).cross(centre).normalized();
+            const V3d across = pixel_centre.cross(centre).normalized();
             const V3d south = V3d(cos * u.x, cos * u.y, -sin) * half_height;
             const V3d east = V3d(-u.y, u.x, 0) * half_width;
             double xx = 0, xy = 0, yy = 0;
@@ -210,9 +234,7 @@ void addFar(Block& block, const V3d& centre, const HalfSides& texel, double radi
                 yy += y * y / 3;
             }
             // Half sides leave the sphere: their ends lie deeper.
-            const double deeper =
-                (south.length2() + east.length2() + texel.a.length2() + texel.b.length2()) / 6 *
-                0.5 * chord;
+            const double deeper = (south.length2() + east.length2()) / 6 * 0.5 * chord;
             // The covariance's Cholesky factor.
             const double l = std::sqrt(xx), m = xy / l, n = std::sqrt(std::max(0.0, yy - m * m));
             double sum = 0;
@@ -295,8 +317,7 @@ NearWeights nearWeights(const NearField& field, const MapExtent& map, int x, int
     const Footprint footprint = footprintOfTexel(of_map, map.layout, map.width, x, y);
     const double scale = footprint.scale;
     const auto [low, high] = ownPart(map.layout, map.width, map.height, x, y);
-    const V2d middle = (low + high) * (0.5 * scale), half = (high - low) * (0.5 * scale);
-    const V3d centre = texelPlace(map, x, y, middle);
+    const V3d centre = texelPlace(map, x, y, (low + high) * (0.5 * scale));
     const std::vector<Arc> outline = outlineOf(map, x, y, scale);
     if (outline.empty()) { // the whole sphere in one texel
         weights.area = field.kernel.mass;
@@ -307,17 +328,15 @@ NearWeights nearWeights(const NearField& field, const MapExtent& map, int x, int
         radius = std::max({radius, (e.a - centre).length(), (e.m - centre).length()});
     setBlock(field, outline, centre, weights);
     Block block{field, weights, {}};
-    const auto side = [&](V2d offset) { return texelPlace(map, x, y, middle + offset) - centre; };
-    addFar(block, centre, {side(V2d(half.x, 0)), side(V2d(0, half.y))}, radius);
+    const std::vector<TexelPoint> four = pointsOf(map, x, y, {scale, scale > 0 ? 2 : 1});
+    addFar(block, centre, momentsOf(four, centre), radius);
     if (scale >= kLeastOutline) {
         const double own = solidAngle(outline, centre);
         const double exact = partSolidAngle(map.layout, map.width, map.height, x, y);
-        const Texel texel{centre,
-                          radius,
-                          outline,
-                          scale < 1 ? own : std::copysign(exact, own), // as the area filter
-                          pointsOf(map, x, y, {scale, 2}),
-                          pointsOf(map, x, y, {scale, 3})};
+        const Texel texel{
+            centre,  radius,
+            outline, scale < 1 ? own : std::copysign(exact, own), // as the area filter
+            four,    pointsOf(map, x, y, {scale, 3})};
         addTexel(block, texel, scale < 1 ? Potential::withArea : Potential::withoutArea);
     } else {
         // Beside a sun pixels' masses need one point more than footprintOf's, which are for lobes.
