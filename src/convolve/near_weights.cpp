@@ -20,7 +20,7 @@ namespace {
 constexpr NearRules kRules[] = {
     {3, 2, 0.75, 8e-3, 1e-3, 10, 5e-5},
     {4, 6, 2, 1e-3, 1e-4, 20, 4e-6},
-    {6, 12, 4, 5e-4, 1e-4, 30, 1e-6},
+    {12, 24, 8, 5e-4, 1e-4, 30, 1e-6},
 };
 
 /// Footprints shrunk below this of the texel's extent are taken at points.
@@ -56,8 +56,11 @@ std::vector<Arc> outlineOf(const MapExtent& map, int x, int y, double scale) {
         for (const double high_t : ends) {
             const double middle = 0.5 * (low_t + high_t);
             V3d from = place(low_t);
-            const double length = Arc{from, place(middle), place(high_t)}.length();
-            const int pieces = std::max(1, static_cast<int>(std::ceil(length / kLongest)));
+            const Arc whole{from, place(middle), place(high_t)};
+            const double length = whole.length();
+            const double turn = length > 0 ? 8 * whole.sagitta() / length : 0;
+            const int pieces =
+                std::max(1, static_cast<int>(std::ceil(std::max(length, turn) / kLongest)));
             const double piece = (high_t - low_t) / pieces;
             for (int k = 0; k < pieces; ++k) {
                 const V3d to = place(low_t + (k + 1) * piece);
@@ -70,16 +73,13 @@ std::vector<Arc> outlineOf(const MapExtent& map, int x, int y, double scale) {
     return outline;
 }
 
-/// Of the triangle, positive where it runs counter-clockwise as seen from outside (Van Oosterom and
-/// Strackee 1983).
-double solidAngle(const V3d& a, const V3d& b, const V3d& c) {
-    return 2 * std::atan2(a.dot(b.cross(c)), 1 + a.dot(b) + b.dot(c) + c.dot(a));
-}
-
+/// Positive where the outline runs counter-clockwise as seen from outside: with t the angle from
+/// the centre and chi the azimuth about it, the integral of (1 - cos t) dchi.
 double solidAngle(const std::vector<Arc>& outline, const V3d& centre) {
     double sum = 0;
     for (const Arc& e : outline)
-        sum += solidAngle(centre, e.a, e.m) + solidAngle(centre, e.m, e.b);
+        for (const ArcPoint& x : threePoints(e))
+            sum += centre.dot(x.at.cross(x.along)) / (1 + centre.dot(x.at));
     return sum;
 }
 
@@ -288,12 +288,10 @@ NearField makeNearField(const NearKernel& kernel, const NearRules& rules, int pr
     };
     const auto value = [&](double x) { return kernel.value(0.25 * x); };
     const auto psi = [&](double x) { return phi(x) + m / (4 * kPi) * std::log(0.25 * x); };
-    const auto swirl = [&](double x) {
-        return (m - beyond(x) - 0.25 * m * x) / (2 * kPi * x * std::max(1e-9, 1 - 0.25 * x));
-    };
-    const auto outer_swirl = [&](double x) {
-        return -beyond(x) / (2 * kPi * x * std::max(1e-9, 1 - 0.25 * x));
-    };
+    // Nothing lies beyond the axis's opposite, where 1 - x / 4 is 0.
+    const auto spread = [&](double x) { return beyond(x) / std::max(1e-9, 1 - 0.25 * x); };
+    const auto swirl = [&](double x) { return (m - spread(x)) / (2 * kPi * x); };
+    const auto outer_swirl = [&](double x) { return -spread(x) / (2 * kPi * x); };
     using enum RadialTable::Beyond;
     const double x0 = least * least, x1 = chord2(reach);
     const auto within = [&](double t) { return m - beyond(chord2(t)); };

@@ -1,0 +1,88 @@
+#include "convolve/near_weights.h"
+
+#include "convolve/gauss.h"
+#include "convolve/peaks.h"
+#include "panorama/layouts.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace ibl {
+namespace {
+
+constexpr int kWidth = 60, kHeight = 30;
+
+/// The mean over the points of a footprint of the kernel's mass over pixel (i, j), by its values.
+double massByPoints(const NearKernel& kernel, const std::vector<V3d>& at, const RowPoints& points,
+                    int i, int j) {
+    const GaussRule& rule = gaussRule(6);
+    double mass = 0, total = 0;
+    for (std::size_t b = 0; b < rule.nodes.size(); ++b) {
+        const double theta = kPi * (j + 0.5 + 0.5 * rule.nodes[b]) / kHeight;
+        for (std::size_t a = 0; a < rule.nodes.size(); ++a) {
+            const V3d p = polarDirection(theta, 2 * kPi * (i + 0.5 + 0.5 * rule.nodes[a]) / kWidth);
+            double mean = 0;
+            for (std::size_t k = 0; k < at.size(); ++k) {
+                const double h = 0.25 * (p - at[k]).length2();
+                if (h < 0.5) mean += points.share[k] * kernel.value(h);
+            }
+            const double weight = rule.weights[a] * rule.weights[b] * std::sin(theta);
+            mass += weight * mean;
+            total += weight;
+        }
+    }
+    return mass / total * latlongPixelSolidAngle(kWidth, kHeight, j);
+}
+
+/// Lobes as wide as texels, where all parts of the method meet: outlines, points within, pixels far
+/// away and on the other side of the sphere, footprints of all scales.
+TEST(NearWeights, OfWideLobesAreTheMeansOfTheirValues) {
+    struct Case {
+        Layout layout;
+        int size, x, y;
+        double exponent;
+    };
+    const Case cases[] = {
+        {Layout::faces, 8, 1, 2, 100},       {Layout::faces, 8, 7, 10, 60},
+        {Layout::faces, 10, 9, 5, 45},       {Layout::latlong, 12, 5, 0, 45},
+        {Layout::latlong, 12, 5, 6, 40},     {Layout::octahedral, 12, 4, 3, 50},
+        {Layout::octahedral, 13, 3, 9, 40},  {Layout::exrCube, 9, 0, 4, 60},
+        {Layout::exrLatlong, 12, 3, 11, 60}, {Layout::exrLatlong, 12, 23, 5, 60},
+        {Layout::mirrorBall, 14, 11, 7, 30}, {Layout::mirrorBall, 14, 5, 6, 30},
+        {Layout::angular, 14, 11, 9, 20},
+    };
+    for (const Case& c : cases) {
+        const Lobe lobe{Kernel::phong, c.exponent};
+        const NearKernel kernel(lobe, 0, 0);
+        const NearField field = makeNearField(kernel, nearRules(0), kWidth, kHeight);
+        const V2i extent = layoutExtent(c.layout, c.size);
+        const MapExtent map{c.layout, extent.x, extent.y, texelAngle({lobe, c.layout, c.size})};
+        const Footprint of_map = footprintOf(lobe, map.texel, kAnyDegree);
+        const NearWeights weights = nearWeights(field, map, c.x, c.y, of_map);
+        Footprint own = footprintOfTexel(of_map, c.layout, extent.x, c.x, c.y);
+        own.samples = own.scale > 0 ? 16 : 1;
+        ASSERT_LT(own.scale, 1); // of whole texels part of the mass is the area filter's
+        const RowPoints points = texelPoints(map, c.x, c.y, own);
+        std::vector<V3d> at;
+        for (std::size_t k = 0; k < points.u.size(); ++k)
+            at.push_back(polarDirection(kPi * points.v[k], 2 * kPi * points.u[k]));
+        double off = 0, sum = weights.area;
+        for (int j = 0; j < weights.rows; ++j) {
+            for (int i = 0; i < weights.columns; ++i) {
+                const double weight =
+                    weights.weight[static_cast<std::size_t>(j * weights.columns + i)];
+                sum += weight;
+                off += std::abs(
+                    weight - massByPoints(kernel, at, points, weights.column + i, weights.row + j));
+            }
+        }
+        EXPECT_NEAR(sum, 1, 1e-12);
+        EXPECT_LT(off, 1e-6) << layoutName(c.layout) << " " << c.size << " at " << c.x << " " << c.y
+                             << ", footprint's scale " << own.scale;
+    }
+}
+
+} // namespace
+} // namespace ibl
