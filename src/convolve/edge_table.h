@@ -27,8 +27,8 @@ namespace ibl {
 class EdgeTable {
 public:
     /// `mass_within` is M(t), `potential` Phi(t), which is 0 from `reach` on, t in radians. Of
-    /// lines nearer than `width` the integrals are taken to vary over `width`. Asked for are |d| and
-    /// |s| up to `extent`, and `nodes` to a unit of the logarithms.
+    /// lines nearer than `width` the integrals are taken to vary over `width`. Asked for are |d|
+    /// and |s| up to `extent`, and `nodes` to a unit of the logarithms.
     EdgeTable(const std::function<double(double)>& mass_within,
               const std::function<double(double)>& potential, double width, double reach,
               double extent, double nodes);
