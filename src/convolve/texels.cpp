@@ -165,7 +165,12 @@ Footprint footprintOfTexel(const Footprint& of_map, Layout layout, int size, int
         return layout == Layout::mirrorBall ? 2 * std::asin(std::min(r, 1.0)) : kPi * r;
     };
     const double extent = angle(std::min(1.0, rho + 1.0 / size)) - angle(rho - 1.0 / size);
-    return footprintFor(of_map.lobe_diameter, std::max(extent, of_map.texel), of_map.degree);
+    Footprint footprint =
+        footprintFor(of_map.lobe_diameter, std::max(extent, of_map.texel), of_map.degree);
+    // Cut by the rim, where a mirror ball's directions change without bound, a texel is not smooth:
+    // Phong 200 on balls of 12 texels is 1.3e-5 off with as many points as others have, 4e-6 so.
+    if (footprint.samples > 1) footprint.samples *= 2;
+    return footprint;
 }
 
 double texelCount(const PrefilterRequest& request) {
