@@ -3,8 +3,11 @@
 
 #include "panorama/conventions.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
+#include <vector>
 
 namespace ibl {
 
@@ -22,6 +25,24 @@ struct Arc {
     double sagitta() const { return ((a + b) * 0.5 - m).length(); }
     std::pair<Arc, Arc> halves() const { return {{a, at(-0.5), m}, {m, at(0.5), b}}; }
 };
+
+/// Appends the smooth curve place(t), t from `from` to `to`, in `least` pieces or more, each at
+/// most `longest` radians long and turning by no more.
+template <class Place>
+void addCurve(const Place& place, double from, double to, int least, double longest,
+              std::vector<Arc>& outline) {
+    V3d a = place(from);
+    const Arc whole{a, place(0.5 * (from + to)), place(to)};
+    const double length = whole.length(), turn = length > 0 ? 8 * whole.sagitta() / length : 0;
+    const int pieces =
+        std::max(least, static_cast<int>(std::ceil(std::max(length, turn) / longest)));
+    const double piece = (to - from) / pieces;
+    for (int k = 0; k < pieces; ++k) {
+        const V3d b = place(from + (k + 1) * piece);
+        outline.push_back({a, place(from + (k + 0.5) * piece), b});
+        a = b;
+    }
+}
 
 /// A quadrature point on a curve: where, and the line element times its weight.
 struct ArcPoint {

@@ -100,14 +100,7 @@ void addCutOutline(Layout layout, const MapRectangle& rectangle, double longest,
             const V3d d = on_rim ? V3d(0, 0, -1) : ballDirection(layout, p);
             return V3d(-d.z, d.x, d.y);
         };
-        V3d from = place(0);
-        const double length = Arc{from, place(0.5), place(1)}.length();
-        const int pieces = std::max(4, static_cast<int>(std::ceil(length / longest)));
-        for (int k = 0; k < pieces; ++k) {
-            const V3d to = place(static_cast<double>(k + 1) / pieces);
-            outline.push_back({from, place((k + 0.5) / pieces), to});
-            from = to;
-        }
+        addCurve(place, 0, 1, 4, longest, outline);
     }
 }
 

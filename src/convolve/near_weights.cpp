@@ -41,33 +41,13 @@ std::vector<Arc> outlineOf(const MapExtent& map, int x, int y, double scale) {
         const auto place = [&](double t) {
             return texelPlace(map, x, y, (begin + step * t) * scale);
         };
-        // In parts without a kink.
         const int along = side % 2;
-        const V2d centre(x + 0.5, y + 0.5);
-        const double start = centre[along] + begin[along] * scale;
-        std::vector<double> ends{1.0};
-        for (const double kink :
-             kinksAlong(map.layout, map.width, centre[1 - along] + begin[1 - along] * scale)) {
-            const double t = (kink - start) / (step[along] * scale);
-            if (t > 0 && t < 1) ends.push_back(t);
-        }
-        std::ranges::sort(ends);
-        double low_t = 0;
-        for (const double high_t : ends) {
-            const double middle = 0.5 * (low_t + high_t);
-            V3d from = place(low_t);
-            const Arc whole{from, place(middle), place(high_t)};
-            const double length = whole.length();
-            const double turn = length > 0 ? 8 * whole.sagitta() / length : 0;
-            const int pieces =
-                std::max(1, static_cast<int>(std::ceil(std::max(length, turn) / kLongest)));
-            const double piece = (high_t - low_t) / pieces;
-            for (int k = 0; k < pieces; ++k) {
-                const V3d to = place(low_t + (k + 1) * piece);
-                outline.push_back({from, place(low_t + (k + 0.5) * piece), to});
-                from = to;
-            }
-            low_t = high_t;
+        const V2d first = V2d(x + 0.5, y + 0.5) + begin * scale, last = first + step * scale;
+        double from = 0;
+        for (const double to : partsBetween(first[along], last[along],
+                                            kinksAlong(map.layout, map.width, first[1 - along]))) {
+            addCurve(place, from, to, 1, kLongest, outline);
+            from = to;
         }
     }
     return outline;
@@ -331,10 +311,10 @@ NearWeights nearWeights(const NearField& field, const MapExtent& map, int x, int
     if (scale >= kLeastOutline) {
         const double own = solidAngle(outline, centre);
         const double exact = partSolidAngle(map.layout, map.width, map.height, x, y);
-        const Texel texel{
-            centre,  radius,
-            outline, scale < 1 ? own : std::copysign(exact, own), // as the area filter
-            four,    pointsOf(map, x, y, {scale, 3})};
+        const double solid_angle =
+            scale < 1 ? own : std::copysign(exact, own); // as the area filter
+        const std::vector<TexelPoint> nine = pointsOf(map, x, y, {scale, 3});
+        const Texel texel{centre, radius, outline, solid_angle, four, nine};
         addTexel(block, texel, scale < 1 ? Potential::withArea : Potential::withoutArea);
     } else {
         // Beside a sun pixels' masses need one point more than footprintOf's, which are for lobes.

@@ -53,16 +53,12 @@ Footprint footprintFor(double lobe_diameter, double texel, int degree) {
 
 /// Takes [0, 1], which stands for [from, to], in the parts that those of `kinks` between leave.
 template <class TakePart>
-void forParts(double from, double to, std::vector<double> kinks, const TakePart& takePart) {
-    std::ranges::sort(kinks);
+void forParts(double from, double to, const std::vector<double>& kinks, const TakePart& takePart) {
     double begin = 0;
-    for (const double kink : kinks) {
-        if (kink <= from || kink >= to) continue;
-        const double end = (kink - from) / (to - from);
+    for (const double end : partsBetween(from, to, kinks)) {
         takePart(begin, end);
         begin = end;
     }
-    takePart(begin, 1.0);
 }
 
 /// Appends the points of texel (x, y), which looks along `centre`, by the rule: the texel is a
@@ -140,6 +136,16 @@ std::vector<double> kinksAlong(Layout layout, int width, double place) {
     if (layout != Layout::octahedral) return {};
     const double middle = 0.5 * width, edge = middle - std::abs(place - middle);
     return {middle - edge, middle, middle + edge};
+}
+
+std::vector<double> partsBetween(double from, double to, const std::vector<double>& kinks) {
+    std::vector<double> ends{1.0};
+    for (const double kink : kinks) {
+        const double t = (kink - from) / (to - from);
+        if (t > 0 && t < 1) ends.push_back(t);
+    }
+    std::ranges::sort(ends);
+    return ends;
 }
 
 double partSolidAngle(Layout layout, int width, int height, int x, int y) {

@@ -65,6 +65,10 @@ TexelPart ownPart(Layout layout, int width, int height, int x, int y);
 /// c the map's middle.
 std::vector<double> kinksAlong(Layout layout, int width, double place);
 
+/// Where the parts end, in order, that those of `kinks` between `from` and `to` leave of the line
+/// between them, which is [0, 1]. The last one is 1.
+std::vector<double> partsBetween(double from, double to, const std::vector<double>& kinks);
+
 /// Solid angle of that part: texelSolidAngle, but for OpenEXR's lat-long, where the first and the
 /// last texel of a row are one, and each counts as half of it. Any layout.
 double partSolidAngle(Layout layout, int width, int height, int x, int y);
