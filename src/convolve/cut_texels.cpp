@@ -30,13 +30,23 @@ Inside clipped(const V2d& from, const V2d& to) {
     return {t0 > 0 ? from + d * t0 : from, t1 < 1 ? from + d * t1 : to, t0 > 0, t1 < 1};
 }
 
-/// The mirror ball's angle from -Z goes as the root of the distance from the rim: places along a
-/// line are taken so that it is smooth in `t`, from 0 to 1.
+/// A place along a line, and its change with t.
+struct Place {
+    double t, density;
+};
+
+/// Places along a line, of t from 0 to 1, so close at the chosen ends that what goes there as the
+/// root of the distance is smooth in t.
+Place placeBetween(double t, bool at_begin, bool at_end) {
+    if (at_begin && at_end) return {t * t * (3 - 2 * t), 6 * t * (1 - t)};
+    if (at_begin) return {t * t, 2 * t};
+    if (at_end) return {t * (2 - t), 2 * (1 - t)};
+    return {t, 1};
+}
+
+/// The mirror ball's angle from -Z goes as the root of the distance from the rim.
 double alongLine(Layout layout, const Inside& line, double t) {
-    if (layout != Layout::mirrorBall) return t;
-    if (line.enters && line.leaves) return t * t * (3 - 2 * t);
-    if (line.enters) return t * t;
-    return line.leaves ? t * (2 - t) : t;
+    return layout == Layout::mirrorBall ? placeBetween(t, line.enters, line.leaves).t : t;
 }
 
 } // namespace
@@ -68,21 +78,41 @@ void addCutPoints(Layout layout, const MapRectangle& rectangle, const GaussRule&
     V2d low = swapped(rectangle.low), high = swapped(rectangle.high);
     const double side = swapped(centre).x < 0 ? -1 : 1;
     if (side < 0) low.x = -std::exchange(high.x, -low.x);
-
-    const double widest = halfChord(std::max(0.0, low.x));
-    const double bottom = std::max(low.y, -widest), top = std::min(high.y, widest);
-    for (std::size_t j = 0; j < rule.nodes.size(); ++j) {
-        const double y = 0.5 * (bottom + top + (top - bottom) * rule.nodes[j]);
-        const double rim = halfChord(y), begin = std::max(low.x, -rim);
-        const double extent = std::min(high.x, rim) - begin;
-        // The mirror ball's angle from -Z is smooth in the root of the distance from the rim.
-        const bool root = layout == Layout::mirrorBall && high.x > rim;
-        for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
-            const double t = 0.5 * (1 + rule.nodes[i]);
-            const double x = begin + extent * (root ? 1 - t * t : t);
-            points.push_back({swapped({side * x, y}), 0.25 * rule.weights[i] * rule.weights[j] *
-                                                          (top - bottom) * std::max(0.0, extent) *
-                                                          (root ? 2 * t : 1)});
+    if (low.x <= -1) { // the whole map
+        addCutPoints(layout, {rectangle.low, V2d(0, rectangle.high.y)}, rule, points);
+        addCutPoints(layout, {V2d(0, rectangle.low.y), rectangle.high}, rule, points);
+        return;
+    }
+    // Between the places where the rim meets a side across, all is smooth: in the mirror ball's
+    // case in the root of the distance from the rim and from such places.
+    const double nearer = halfChord(high.x), farther = halfChord(std::max(0.0, low.x));
+    std::vector<double> ends;
+    for (const double end : {low.y, high.y, -farther, -nearer, nearer, farther}) {
+        if (end >= low.y && end <= high.y && std::abs(end) <= farther) ends.push_back(end);
+    }
+    std::ranges::sort(ends);
+    const bool roots = layout == Layout::mirrorBall;
+    const auto isMeeting = [&](double y) {
+        return std::abs(y) == nearer || std::abs(y) == farther;
+    };
+    for (std::size_t part = 0; part + 1 < ends.size(); ++part) {
+        const double bottom = ends[part], top = ends[part + 1];
+        for (std::size_t j = 0; j < rule.nodes.size(); ++j) {
+            const Place across = placeBetween(0.5 * (1 + rule.nodes[j]), roots && isMeeting(bottom),
+                                              roots && isMeeting(top));
+            const double y = bottom + (top - bottom) * across.t;
+            const double rim = halfChord(y), end = std::min(high.x, rim);
+            const double height = 0.5 * rule.weights[j] * across.density * (top - bottom);
+            const double first = std::sqrt(rim - end);
+            const double last = std::sqrt(std::max(0.0, rim - low.x));
+            for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
+                const double t = 0.5 * (1 + rule.nodes[i]);
+                const double root = first + (last - first) * t;
+                const double x = roots ? rim - root * root : low.x + (end - low.x) * t;
+                const double width = roots ? 2 * root * (last - first) : end - low.x;
+                points.push_back({swapped({side * x, y}),
+                                  0.5 * rule.weights[i] * height * std::max(0.0, width)});
+            }
         }
     }
 }

@@ -44,8 +44,8 @@ Footprint footprintFor(double lobe_diameter, double texel, int degree) {
                         degree};
     if (footprint.scale > 0) {
         const double extent = footprint.scale * texel;
-        const double for_lobe = 2 + 5 * extent / lobe_diameter;
-        const double for_waves = 2 + 1.2 * extent * degree / kPi; // Gauss: pi points a wave
+        const double for_lobe = 3 + 7.5 * extent / lobe_diameter;
+        const double for_waves = 3 + 1.8 * extent * degree / kPi; // Gauss: pi points a wave
         footprint.samples = std::max(2, static_cast<int>(std::ceil(std::min(for_lobe, for_waves))));
     }
     return footprint;
@@ -171,12 +171,7 @@ Footprint footprintOfTexel(const Footprint& of_map, Layout layout, int size, int
         return layout == Layout::mirrorBall ? 2 * std::asin(std::min(r, 1.0)) : kPi * r;
     };
     const double extent = angle(std::min(1.0, rho + 1.0 / size)) - angle(rho - 1.0 / size);
-    Footprint footprint =
-        footprintFor(of_map.lobe_diameter, std::max(extent, of_map.texel), of_map.degree);
-    // Cut by the rim, where a mirror ball's directions change without bound, a texel is not smooth:
-    // Phong 200 on balls of 12 texels is 1.3e-5 off with as many points as others have, 4e-6 so.
-    if (footprint.samples > 1) footprint.samples *= 2;
-    return footprint;
+    return footprintFor(of_map.lobe_diameter, std::max(extent, of_map.texel), of_map.degree);
 }
 
 double texelCount(const PrefilterRequest& request) {

@@ -10,9 +10,11 @@
 namespace ibl {
 namespace {
 
-/// Sides are off their chords by no more than this in the chart, in pixels. Neighbours share the
-/// vertices, so no area is lost by it.
-constexpr double kBend = 2e-4;
+/// Sides are off their chords by no more than this in the chart, in pixels, and bent to their area.
+/// Neighbours share the vertices, so no area is lost by it.
+constexpr double kBend = 1e-3;
+/// Below this part of what they may be off by, chords stay as they are.
+constexpr double kUnbent = 0.01;
 constexpr int kMostHalvings = 30; ///< of a quarter of the sphere, down to isApex
 /// Cells stand this much inside, because texels' edges are where cubes' faces meet.
 constexpr double kInside = 1e-9;
@@ -23,6 +25,13 @@ V3d middleOf(const V3d& p, const V3d& q) {
     return (p + q).normalized();
 }
 
+/// What stands for a parabola between its ends and has its area: the corner of a triangle, a third
+/// higher than its middle, which is `off` the chord's.
+template <class Vector>
+Vector corner(const Vector& middle, const Vector& off) {
+    return middle + off * (1.0 / 3);
+}
+
 /// Appends what lies between the directions p and q of the image's points a and b.
 void appendSide(const Panorama& panorama, const V2d& a, const V2d& b, const V3d& p, const V3d& q,
                 double tolerance, int depth, SpherePolygon& outline) {
@@ -31,8 +40,13 @@ void appendSide(const Panorama& panorama, const V2d& a, const V2d& b, const V3d&
     const V3d m =
         texelDirection(panorama.layout, image.width, image.height, c.x, c.y).value_or(kRim);
     const bool near = p.dot(q) > 0.9;
-    if (depth >= kMostHalvings ||
-        (near && (m - middleOf(p, q)).length2() < tolerance * tolerance)) {
+    const V3d off = m - middleOf(p, q);
+    if (near && off.length2() < tolerance * tolerance) {
+        if (off.length2() > std::pow(kUnbent * tolerance, 2))
+            outline.push_back(corner(m, off).normalized());
+        return;
+    }
+    if (depth >= kMostHalvings) {
         if (!near) outline.push_back(m);
         return;
     }
@@ -83,22 +97,25 @@ V2d chartPoint(const Panorama& panorama, const Sector& sector, V3d d) {
     return squareMapPoint(panorama.layout, d) * width;
 }
 
-/// Whether the middle of a side is its chord's.
-bool isStraight(const Panorama& panorama, const V2d& a, const V2d& b, const V2d& middle) {
-    const V2d off = middle - (a + b) * 0.5;
+/// By how many times what it may be a side's middle is off its chord's.
+double bend(const Panorama& panorama, const V2d& middle, const V2d& off) {
     double unit = 1;
     if (panorama.layout == Layout::latlong) { // a row of -cos(theta), at the poles half of one
         const double row = kPi / panorama.image.height;
         unit = row * std::max(std::sqrt(std::max(0.0, 1 - middle.y * middle.y)), 0.5 * row);
     }
-    return std::abs(off.x) < kBend && std::abs(off.y) < kBend * unit;
+    return std::max(std::abs(off.x), std::abs(off.y) / unit) / kBend;
 }
 
 void carrySide(const Panorama& panorama, const Sector& sector, const V3d& p, const V3d& q,
                const V2d& a, const V2d& b, int depth, std::vector<V2d>& flat) {
     const V3d m = middleOf(p, q);
-    const V2d c = chartPoint(panorama, sector, m);
-    if (isStraight(panorama, a, b, c) || depth >= kMostHalvings) return;
+    const V2d c = chartPoint(panorama, sector, m), off = c - (a + b) * 0.5;
+    const double bent = bend(panorama, c, off);
+    if (bent < 1 || depth >= kMostHalvings) {
+        if (bent > kUnbent) flat.push_back(corner(c, off));
+        return;
+    }
     carrySide(panorama, sector, p, m, a, c, depth + 1, flat);
     flat.push_back(c);
     carrySide(panorama, sector, m, q, c, b, depth + 1, flat);
@@ -120,9 +137,12 @@ void carryApex(const Panorama& panorama, const Sector& sector, const V3d& apex, 
     const double from = azimuth(before), turn = std::remainder(azimuth(after) - from, 2 * kPi);
     const int pieces =
         1 + static_cast<int>(std::abs(turn) / std::sqrt(8 * kBend / std::max(1.0, radius)));
+    const double piece = turn / pieces;
+    // As far out as gives the polygon the sector's area.
+    const double out = piece == 0 ? radius : radius * std::sqrt(piece / std::sin(piece));
     for (int k = 0; k <= pieces; ++k) {
-        const double at = from + turn * k / pieces;
-        flat.push_back(V2d(radius) + V2d(std::cos(at), std::sin(at)) * radius);
+        const double at = from + piece * k;
+        flat.push_back(V2d(radius) + V2d(std::cos(at), std::sin(at)) * out);
     }
 }
 

@@ -13,9 +13,9 @@ using SpherePolygon = std::vector<V3d>;
 
 /// What belongs to the square of that size at (x, y) of a lat-long's, of faces' or of a square
 /// map's image, without what lies outside a ball map's disc: appended to `outline`. Sides are
-/// followed to `tolerance` radians; squares that share one share its vertices. A ball map's whole
-/// rim is the one vertex -Z. Nothing for a square outside the disc; not for one that holds the
-/// whole disc.
+/// followed to `tolerance` radians and their areas kept; squares that share one share its vertices.
+/// A ball map's whole rim is the one vertex -Z. Nothing for a square outside the disc; not for one
+/// that holds the whole disc.
 void appendCell(const Panorama& panorama, double x, double y, double size, double tolerance,
                 SpherePolygon& outline);
 
@@ -33,9 +33,9 @@ std::vector<Sector> sectorsOf(Layout layout);
 /// The polygon's part in a sector.
 void clipTo(const Sector& sector, const SpherePolygon& polygon, SpherePolygon& part);
 
-/// Carries a polygon within a sector into the chart, where it is to be straight to `kBend` pixels.
-/// Charts are images in pixels, but for a lat-long's y, which is -cos(theta): there area is solid
-/// angle.
+/// Carries a polygon within a sector into the chart, where its sides are followed to `kBend` pixels
+/// and their areas kept. Charts are images in pixels, but for a lat-long's y, which is -cos(theta):
+/// there area is solid angle.
 void carry(const Panorama& panorama, const Sector& sector, const SpherePolygon& part,
            std::vector<V2d>& flat);
 

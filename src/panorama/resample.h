@@ -22,7 +22,8 @@ enum class Enlarging {
 /// cube family, gives the same bits. A constant probe stays constant and a non-negative one
 /// non-negative. Cells of a cross outside its faces and
 /// texels of a ball map outside its disc are 0. To and from square maps (square_maps.h) means are
-/// by polygons whose edges are straight in the source's image to 0.01 pixels.
+/// by polygons whose corners are 1e-3 pixels from the sides that they follow, and that have their
+/// area (chart.h).
 ///
 /// `threads` 0: as many as the machine has; the result does not depend on it.
 /// Throws Error (usage) when size < 1 or the image would have more than 65536 pixels an edge or

@@ -14,8 +14,9 @@
 namespace ibl {
 namespace {
 
-/// Sides of texels are followed to this part of the source's mean pixel and of the texel.
-constexpr double kFollow = 2e-4;
+/// Sides of texels are followed to this part of the source's mean pixel and of the texel, and their
+/// area kept: without that, 2e-4 left 5e-6 of a coarse map, in as much time as this leaves 7e-8.
+constexpr double kFollow = 1e-3;
 
 double area(const std::vector<V2d>& p) { ///< signed
     double sum = 0;

@@ -12,8 +12,9 @@ namespace {
 
 using Imath::V2i;
 
+/// Of -0 as well: at -Y, which lies in all four corners, it tells which.
 double sign(double x) {
-    return x < 0 ? -1 : 1;
+    return std::copysign(1.0, x);
 }
 
 /// The lower half's triangles turned over the square's diagonals; its own inverse.
