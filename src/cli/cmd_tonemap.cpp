@@ -9,6 +9,7 @@
 #include "panorama/census.h"
 #include "render/exposure.h"
 
+#include <chrono>
 #include <exception>
 #include <future>
 #include <memory>
@@ -26,19 +27,36 @@ struct TonemapOptions {
     ImageOutputOptions output;
 };
 
-Image readPicture(Session& session, const TonemapOptions& options) {
+/// The picture and what is in it; the seconds that this took.
+struct Reading {
+    ImageFile file;
+    PictureCensus census;
+    double seconds_reading = 0, seconds_screening = 0;
+};
+
+PictureCensus screen(const Image& picture, const TonemapOptions& options) {
+    return takePictureCensus(picture, deltaOf(options.display), options.common.threads);
+}
+
+Reading readPicture(const TonemapOptions& options) {
+    using Clock = std::chrono::steady_clock;
+    const auto seconds = [](Clock::duration d) { return std::chrono::duration<double>(d).count(); };
+    const auto begin = Clock::now();
+    Reading reading;
     if (isBuiltin(options.input)) {
-        return builtinProbe(options.input, 512, session.threads()).image;
+        reading.file.image = builtinProbe(options.input, 512, options.common.threads).image;
+    } else {
+        ReadOptions how;
+        how.layer = options.layer;
+        how.keep_alpha = true;
+        how.threads = options.common.threads;
+        reading.file = readImage(options.input, how);
     }
-    ReadOptions how;
-    how.layer = options.layer;
-    how.keep_alpha = true;
-    how.threads = session.threads();
-    session.addInput(options.input);
-    ImageFile file = session.stage("read", [&] { return readImage(options.input, how); });
-    for (const std::string& text : file.notes)
-        session.note(options.input, text);
-    return std::move(file.image);
+    const auto read = Clock::now();
+    reading.census = screen(reading.file.image, options);
+    reading.seconds_reading = seconds(read - begin);
+    reading.seconds_screening = seconds(Clock::now() - read);
+    return reading;
 }
 
 /// Mends the colours as those of a probe.
@@ -57,17 +75,19 @@ void mendPicture(Session& session, const std::string& subject, Image& picture) {
     exchange(true);
 }
 
-/// Mends or refuses what is not finite; returns the log-average.
-double screenPicture(Session& session, const TonemapOptions& options, Image& picture) {
-    const auto census = [&] {
-        return session.stage("screen", [&] {
-            return takePictureCensus(picture, deltaOf(options.display), session.threads());
-        });
-    };
-    PictureCensus found = census();
+/// Says what was read; mends or refuses what is not finite.
+void tellReading(Session& session, const TonemapOptions& options, Reading& reading) {
+    if (!isBuiltin(options.input)) {
+        session.addInput(options.input);
+        session.addSeconds("read", reading.seconds_reading);
+    }
+    session.addSeconds("screen", reading.seconds_screening);
+    for (const std::string& text : reading.file.notes)
+        session.note(options.input, text);
+    PictureCensus& found = reading.census;
     if (options.repair && found.nan + found.infinite + found.negative > 0) {
-        mendPicture(session, options.input, picture);
-        found = census();
+        mendPicture(session, options.input, reading.file.image);
+        found = session.stage("screen", [&] { return screen(reading.file.image, options); });
     }
     if (found.nan + found.infinite > 0) {
         throw inputError(options.input, std::to_string(found.nan) + " NaN and " +
@@ -78,32 +98,42 @@ double screenPicture(Session& session, const TonemapOptions& options, Image& pic
         session.note(options.input, std::to_string(found.negative) +
                                         " negative pixels kept; --repair sets them to 0");
     }
-    return found.log_average;
 }
 
 void runTonemap(const TonemapOptions& options) {
     Session session("tonemap", options.common);
     const WriteOptions how = writeOptions(options.output, options.common);
     requireFitting(options.display, options.output);
-    // The device is found while the picture is read, on this thread, where the context must be.
-    Image picture;
-    std::future<double> reading = std::async(std::launch::async, [&] {
-        picture = readPicture(session, options);
-        return screenPicture(session, options, picture);
-    });
+    // The device is found and the passes are made while the picture is read, on this thread, where
+    // the context must be.
+    std::future<Reading> pending =
+        std::async(std::launch::async, [&] { return readPicture(options); });
     std::optional<EglContext> context;
-    std::exception_ptr no_device;
+    std::optional<PictureDisplay> display;
+    std::exception_ptr failure;
     try {
         context.emplace();
+        display.emplace(session, *context, options.display);
+        display->warmUp();
     } catch (...) {
-        no_device = std::current_exception();
+        failure = std::current_exception();
     }
-    const double log_average = reading.get(); // what is wrong with the picture is said first
-    if (no_device) std::rethrow_exception(no_device);
+    Reading reading = pending.get(); // what is wrong with the picture is said first
+    tellReading(session, options, reading);
+    if (failure) std::rethrow_exception(failure);
     session.detail("device: " + context->description());
     session.results()["device"] = context->description();
-    showPicture(session, *context, options.display, std::move(picture), log_average, options.output,
-                how);
+    Image& picture = reading.file.image;
+    display->show(picture, reading.census.log_average);
+    display->handOn();
+    session.stage("write", [&] {
+        const std::string& path = options.output.output;
+        const WriteLosses losses =
+            writeShown(session.outputs(), path, picture, options.display, how, session.threads());
+        noteShown(session, path, losses, options.display, how,
+                  static_cast<double>(picture.width) * picture.height);
+        session.addOutput(path);
+    });
     session.finish();
 }
 

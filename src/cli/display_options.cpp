@@ -274,6 +274,10 @@ PictureDisplay::PictureDisplay(Session& session, const EglContext& context,
     chain_.emplace(context, options, std::move(shader_folder));
 }
 
+void PictureDisplay::warmUp() {
+    session_.stage("warm up", [&] { chain_->warmUp(session_.threads()); });
+}
+
 double PictureDisplay::exposureOf(const Image& picture, std::optional<double> log_average) {
     const DisplayArguments& a = arguments_;
     if (!a.auto_exposure) return a.exposure;
@@ -331,21 +335,6 @@ void noteShown(Session& session, const std::string& path, const WriteLosses& los
     }
     for (const std::string& line : lines)
         session.note(path, line);
-}
-
-void showPicture(Session& session, const EglContext& context, const DisplayArguments& arguments,
-                 Image picture, std::optional<double> log_average, const ImageOutputOptions& output,
-                 const WriteOptions& how) {
-    PictureDisplay display(session, context, arguments);
-    display.show(picture, log_average);
-    display.handOn();
-    session.stage("write", [&] {
-        const WriteLosses losses = writeShown(session.outputs(), output.output, picture, arguments,
-                                              how, session.threads());
-        noteShown(session, output.output, losses, arguments, how,
-                  static_cast<double>(picture.width) * picture.height);
-        session.addOutput(output.output);
-    });
 }
 
 } // namespace ibl

@@ -51,6 +51,9 @@ public:
     PictureDisplay(Session& session, const EglContext& context, const DisplayArguments& arguments,
                    std::optional<std::filesystem::path> shader_folder = std::nullopt);
 
+    /// As DisplayChain's.
+    void warmUp();
+
     /// Sends a picture through the chain, in its place, and returns the stops that it was exposed
     /// by. `log_average` is that of the picture, where it is known already.
     double show(Image& picture, std::optional<double> log_average = std::nullopt);
@@ -75,10 +78,5 @@ WriteLosses writeShown(OutputSet& outputs, const std::string& path, const Image&
 /// says of how many of its `pixels` that is, and what would keep them.
 void noteShown(Session& session, const std::string& path, const WriteLosses& losses,
                const DisplayArguments& arguments, const WriteOptions& how, double pixels);
-
-/// Shows one picture and adds it to the session's outputs, with the state of adaptation.
-void showPicture(Session& session, const EglContext& context, const DisplayArguments& arguments,
-                 Image picture, std::optional<double> log_average, const ImageOutputOptions& output,
-                 const WriteOptions& how);
 
 } // namespace ibl

@@ -91,9 +91,10 @@ bool evaluationIsCheaper(int degree, std::size_t points) {
     return points < 4 * static_cast<std::size_t>(degree);
 }
 
-std::size_t mapPoints(const Image& map, const Footprint& footprint) {
-    return static_cast<std::size_t>(map.width) * map.height *
-           static_cast<std::size_t>(footprint.samples) * footprint.samples;
+std::size_t mapPoints(Layout layout, const Image& map, const Footprint& footprint) {
+    const auto samples = static_cast<std::size_t>(
+        footprintOfTexel(footprint, layout, map.width, 0, map.height / 2).samples);
+    return static_cast<std::size_t>(map.width) * map.height * samples * samples;
 }
 
 MapValues evaluateMap(const Harmonics& harmonics, const std::vector<double>& scale, int degree,

@@ -19,8 +19,8 @@ void evaluateField(const Harmonics& harmonics, const std::vector<double>& scale,
 /// which share many an |cos theta|.
 bool evaluationIsCheaper(int degree, std::size_t points);
 
-/// Points of a map, about: its texels' places times those of a footprint.
-std::size_t mapPoints(const Image& map, const Footprint& footprint);
+/// Points of a map, about: its texels' places times those of a footprint, of ball maps at the rim.
+std::size_t mapPoints(Layout layout, const Image& map, const Footprint& footprint);
 
 /// A field at all points of a map.
 struct MapValues {

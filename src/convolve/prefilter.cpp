@@ -13,6 +13,7 @@
 #include "panorama/conventions.h"
 #include "panorama/layouts.h"
 #include "panorama/resample.h"
+#include "panorama/square_maps.h"
 
 #include <algorithm>
 #include <chrono>
@@ -246,7 +247,7 @@ PrefilterResult byHarmonics(const Engine& engine, const PrefilterRequest& reques
     SmoothField field;
     MapValues at_points;
     const Image& map = result.map.image;
-    if (evaluationIsCheaper(degree, mapPoints(map, footprint))) {
+    if (evaluationIsCheaper(degree, mapPoints(request.layout, map, footprint))) {
         at_points = evaluateMap(*engine.clamped, lobe.k, degree, request.layout, map.width,
                                 map.height, footprint, threads);
         parts.at_points = &at_points;
@@ -265,10 +266,12 @@ PrefilterResult byHarmonics(const Engine& engine, const PrefilterRequest& reques
     const SpectrumError error = spectrumError(lobe.k, engine.power, engine.clamped_energy, degree);
     const RelativeError relative_error =
         relativeError(error, norm.root() * engine.probe.scale, norm.texels());
-    result.error_bound = relative_error.bound;
-    result.error_estimate = relative_error.estimate;
+    const bool by_points = footprint.samples > 1 || isBallMap(request.layout);
+    const double within = by_points ? kFootprintError : 0;
+    result.error_bound = relative_error.bound + within;
+    result.error_estimate = std::hypot(relative_error.estimate, within / 3);
     const double mean = norm.absolute() * engine.probe.scale / (12 * kPi);
-    result.worst_bound = relative(error.pointwise, mean);
+    result.worst_bound = relative(error.pointwise, mean) + 10 * within;
     result.seconds_spatial = watch.seconds() - result.seconds_synthesis;
     return result;
 }
@@ -301,7 +304,7 @@ PrefilterResult inTwoParts(const Engine& engine, const PrefilterRequest& request
             spectrumError(split.k, engine.whole_power, engine.statistics.energy, split.degree);
         const RelativeError far =
             relativeError(error, norm.root() * engine.probe.scale, norm.texels());
-        result.error_bound = far.bound;
+        result.error_bound = far.bound + kFootprintError;
         result.error_estimate = far.estimate;
     }
     result.error_bound = std::hypot(result.error_bound, rules.error);

@@ -39,14 +39,23 @@ GaussRule footprintRule(int n) {
     return rule;
 }
 
-Footprint footprintFor(double lobe_diameter, double texel, int degree) {
-    Footprint footprint{std::clamp(2 - lobe_diameter / texel, 0.0, 1.0), 1, texel, lobe_diameter,
+/// Points of a map that take little time.
+constexpr double kPoints = 1 << 15;
+
+/// For texels of that extent in a map of texels of that angle, `density` times as many points as
+/// smooth ones need.
+Footprint footprintFor(double lobe_diameter, double texel, int degree, double extent,
+                       double density) {
+    Footprint footprint{std::clamp(2 - lobe_diameter / extent, 0.0, 1.0), 1, texel, lobe_diameter,
                         degree};
     if (footprint.scale > 0) {
-        const double extent = footprint.scale * texel;
-        const double for_lobe = 3 + 7.5 * extent / lobe_diameter;
-        const double for_waves = 3 + 1.8 * extent * degree / kPi; // Gauss: pi points a wave
-        footprint.samples = std::max(2, static_cast<int>(std::ceil(std::min(for_lobe, for_waves))));
+        const double covered = footprint.scale * extent;
+        const double for_lobe = density * (3 + 7.5 * covered / lobe_diameter);
+        const double for_waves = density * (3 + 1.8 * covered * degree / kPi); // Gauss: pi a wave
+        // Of few texels more than that: a lobe's horizon crosses them.
+        const double many = std::sqrt(kPoints / (4 * kPi)) * texel;
+        const double samples = std::min(std::max(for_lobe, many), for_waves);
+        footprint.samples = std::max(2, static_cast<int>(std::ceil(samples)));
     }
     return footprint;
 }
@@ -160,7 +169,7 @@ double texelAngle(const PrefilterRequest& request) {
 }
 
 Footprint footprintOf(const Lobe& lobe, double texel, int degree) {
-    return footprintFor(2 * lobeWidth(lobe), texel, degree);
+    return footprintFor(2 * lobeWidth(lobe), texel, degree, texel, 1);
 }
 
 Footprint footprintOfTexel(const Footprint& of_map, Layout layout, int size, int x, int y) {
@@ -171,7 +180,10 @@ Footprint footprintOfTexel(const Footprint& of_map, Layout layout, int size, int
         return layout == Layout::mirrorBall ? 2 * std::asin(std::min(r, 1.0)) : kPi * r;
     };
     const double extent = angle(std::min(1.0, rho + 1.0 / size)) - angle(rho - 1.0 / size);
-    return footprintFor(of_map.lobe_diameter, std::max(extent, of_map.texel), of_map.degree);
+    // Directions change unevenly within it: the diffuse ball of 5 texels is 5e-6 off with as many
+    // points as others have.
+    return footprintFor(of_map.lobe_diameter, of_map.texel, of_map.degree,
+                        std::max(extent, of_map.texel), 2);
 }
 
 double texelCount(const PrefilterRequest& request) {

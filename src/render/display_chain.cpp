@@ -354,4 +354,11 @@ void DisplayChain::apply(Image& picture, double exposure_stops, int threads) {
     state_->run(picture, 1, o.tone_map, false, threads);
 }
 
+void DisplayChain::warmUp(int threads) {
+    // Halved it is even, then odd, and has levels enough for both ways up.
+    Image small(256, 248);
+    std::ranges::fill(small.pixels, 1.0f);
+    apply(small, 0, threads);
+}
+
 } // namespace ibl

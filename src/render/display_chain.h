@@ -51,6 +51,10 @@ public:
     DisplayChain(DisplayChain&&) noexcept;
     DisplayChain& operator=(DisplayChain&&) noexcept;
 
+    /// Makes the passes that a picture without alpha needs, machine code of software rasterisers
+    /// included, so that apply() finds them ready. For while it has to be waited for.
+    void warmUp(int threads = 0);
+
     /// Puts the picture (3 or 4 channels, scene-linear, premultiplied) times 2^exposure through the
     /// chain, in its place: linear display light, display-encoded after ToneMap::display. NaN
     /// counts as 0 and what is beyond floats as their largest. `threads` as everywhere.
