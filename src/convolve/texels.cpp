@@ -41,6 +41,8 @@ GaussRule footprintRule(int n) {
 
 /// Points of a map that take little time.
 constexpr double kPoints = 1 << 15;
+/// Enough for any texel: the waves that would need more are weak in its mean.
+constexpr double kMostSamples = 512;
 
 /// For texels of that extent in a map of texels of that angle, `density` times as many points as
 /// smooth ones need.
@@ -54,7 +56,7 @@ Footprint footprintFor(double lobe_diameter, double texel, int degree, double ex
         const double for_waves = density * (3 + 1.8 * covered * degree / kPi); // Gauss: pi a wave
         // Of few texels more than that: a lobe's horizon crosses them.
         const double many = std::sqrt(kPoints / (4 * kPi)) * texel;
-        const double samples = std::min(std::max(for_lobe, many), for_waves);
+        const double samples = std::min({std::max(for_lobe, many), for_waves, kMostSamples});
         footprint.samples = std::max(2, static_cast<int>(std::ceil(samples)));
     }
     return footprint;
