@@ -32,10 +32,12 @@ struct Axis {
 };
 
 /// The axis at the lat-long point (u, v), moved off it by far less than any lobe's width: texel
-/// centres often lie exactly on pixels' edges and corners, where the angle chi has no value.
+/// centres often lie exactly on pixels' edges and corners, where the angle chi has no value. At the
+/// poles, where all meridians meet, as far along the parallel, which is a large angle there.
 inline Axis makeAxis(double u, double v) {
     const double theta = std::numbers::pi * v + (v < 0.5 ? 1.7e-10 : -1.7e-10);
-    return {theta, 2 * std::numbers::pi * u + 1.3e-10, std::sin(theta), std::cos(theta)};
+    const double sin_theta = std::sin(theta);
+    return {theta, 2 * std::numbers::pi * u + 1.3e-10 / sin_theta, sin_theta, std::cos(theta)};
 }
 
 namespace edges {

@@ -42,7 +42,7 @@ GaussRule footprintRule(int n) {
 /// Points of a map that take little time.
 constexpr double kPoints = 1 << 15;
 /// Enough for any texel: the waves that would need more are weak in its mean.
-constexpr double kMostSamples = 512;
+constexpr double kMostSamples = 768;
 
 /// For texels of that extent in a map of texels of that angle, `density` times as many points as
 /// smooth ones need.
