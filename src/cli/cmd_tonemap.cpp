@@ -77,10 +77,7 @@ void mendPicture(Session& session, const std::string& subject, Image& picture) {
 
 /// Says what was read; mends or refuses what is not finite.
 void tellReading(Session& session, const TonemapOptions& options, Reading& reading) {
-    if (!isBuiltin(options.input)) {
-        session.addInput(options.input);
-        session.addSeconds("read", reading.seconds_reading);
-    }
+    if (!isBuiltin(options.input)) session.addSeconds("read", reading.seconds_reading);
     session.addSeconds("screen", reading.seconds_screening);
     for (const std::string& text : reading.file.notes)
         session.note(options.input, text);
@@ -104,6 +101,7 @@ void runTonemap(const TonemapOptions& options) {
     Session session("tonemap", options.common);
     const WriteOptions how = writeOptions(options.output, options.common);
     requireFitting(options.display, options.output);
+    if (!isBuiltin(options.input)) session.addInput(options.input);
     // The device is found and the passes are made while the picture is read, on this thread, where
     // the context must be.
     std::future<Reading> pending =

@@ -59,10 +59,14 @@ Session::StageTimer::StageTimer(Session& session, const char* name)
 
 Session::StageTimer::~StageTimer() {
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin_;
-    session_.stages_.emplace_back(name_, taken.count());
+    session_.addSeconds(name_, taken.count());
+}
+
+void Session::addSeconds(const char* stage, double seconds) {
+    stages_.emplace_back(stage, seconds);
     char text[96];
-    std::snprintf(text, sizeof text, "%s: %.1f ms", name_, 1e3 * taken.count());
-    session_.detail(text);
+    std::snprintf(text, sizeof text, "%s: %.1f ms", stage, 1e3 * seconds);
+    detail(text);
 }
 
 Session::Session(std::string command, const CommonOptions& common)

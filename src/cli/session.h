@@ -77,7 +77,7 @@ public:
     OutputSet& outputs() { return outputs_; }
     void addOutput(const std::string& path) { output_names_.push_back(path); }
     /// Adds to a stage's seconds what was spent on it beside the others.
-    void addSeconds(const char* stage, double seconds) { stages_.emplace_back(stage, seconds); }
+    void addSeconds(const char* stage, double seconds);
 
     /// The command's own part of the report.
     nlohmann::ordered_json& results();

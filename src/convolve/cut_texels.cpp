@@ -78,7 +78,7 @@ void addCutPoints(Layout layout, const MapRectangle& rectangle, const GaussRule&
     V2d low = swapped(rectangle.low), high = swapped(rectangle.high);
     const double side = swapped(centre).x < 0 ? -1 : 1;
     if (side < 0) low.x = -std::exchange(high.x, -low.x);
-    if (low.x <= -1) { // the whole map
+    if (low.x < -0.5) { // the whole map: both sides are near
         addCutPoints(layout, {rectangle.low, V2d(0, rectangle.high.y)}, rule, points);
         addCutPoints(layout, {V2d(0, rectangle.low.y), rectangle.high}, rule, points);
         return;
@@ -97,6 +97,7 @@ void addCutPoints(Layout layout, const MapRectangle& rectangle, const GaussRule&
     };
     for (std::size_t part = 0; part + 1 < ends.size(); ++part) {
         const double bottom = ends[part], top = ends[part + 1];
+        if (top - bottom < 1e-12 * (high.y - low.y)) continue;
         for (std::size_t j = 0; j < rule.nodes.size(); ++j) {
             const Place across = placeBetween(0.5 * (1 + rule.nodes[j]), roots && isMeeting(bottom),
                                               roots && isMeeting(top));

@@ -372,15 +372,18 @@ std::vector<PrefilterResult> prefilter(const Panorama& latlong,
         }
         return results;
     }
+    PrefilterOptions planned = options;
+    planned.max_error = std::max(0.25 * options.max_error,
+                                 options.max_error - kFootprintError - 2 * kFloatRounding);
     const std::vector<Plan> plans =
-        makePlans(statistics, requests, options.max_error, latlong.image.width, options.threads);
+        makePlans(statistics, requests, planned.max_error, latlong.image.width, options.threads);
     requireReachable(plans, options.max_error);
     for (const Plan& plan : plans) {
         const Engine engine = analyseProbe(latlong, statistics, plan, options);
         for (std::size_t k = 0; k < plan.lobes.size(); ++k) {
             const PrefilterRequest& request = requests[plan.requests[k]];
             PrefilterResult& result = results[plan.requests[k]];
-            result = byMethod(engine, request, plan.lobes[k], options);
+            result = byMethod(engine, request, plan.lobes[k], planned);
             result.seconds_analysis = seconds_measuring + engine.seconds;
         }
     }

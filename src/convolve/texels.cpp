@@ -185,7 +185,7 @@ Footprint footprintOfTexel(const Footprint& of_map, Layout layout, int size, int
     // Directions change unevenly within it: the diffuse ball of 5 texels is 5e-6 off with as many
     // points as others have.
     return footprintFor(of_map.lobe_diameter, of_map.texel, of_map.degree,
-                        std::max(extent, of_map.texel), 2);
+                        std::max(extent, of_map.texel), 1.4);
 }
 
 double texelCount(const PrefilterRequest& request) {
