@@ -266,7 +266,7 @@ PrefilterResult byHarmonics(const Engine& engine, const PrefilterRequest& reques
     const SpectrumError error = spectrumError(lobe.k, engine.power, engine.clamped_energy, degree);
     const RelativeError relative_error =
         relativeError(error, norm.root() * engine.probe.scale, norm.texels());
-    const bool by_points = footprint.samples > 1 || isBallMap(request.layout);
+    const bool by_points = norm.root() > 0 && (footprint.samples > 1 || isBallMap(request.layout));
     const double within = by_points ? kFootprintError : 0;
     result.error_bound = relative_error.bound + within;
     result.error_estimate = std::hypot(relative_error.estimate, within / 3);

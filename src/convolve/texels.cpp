@@ -54,8 +54,10 @@ Footprint footprintFor(double lobe_diameter, double texel, int degree, double ex
         const double covered = footprint.scale * extent;
         const double for_lobe = density * (3 + 7.5 * covered / lobe_diameter);
         const double for_waves = density * (3 + 1.8 * covered * degree / kPi); // Gauss: pi a wave
-        // Of few texels more than that: a lobe's horizon crosses them.
-        const double many = std::sqrt(kPoints / (4 * kPi)) * texel;
+        // Of few texels more than that: a lobe's horizon crosses them. Peaks, of which there may be
+        // as many as pixels, cost too much at so many.
+        const double few_texels = std::sqrt(kPoints / (4 * kPi)) * texel;
+        const double many = degree == kAnyDegree ? std::min(few_texels, 16.0) : few_texels;
         const double samples = std::min({std::max(for_lobe, many), for_waves, kMostSamples});
         footprint.samples = std::max(2, static_cast<int>(std::ceil(samples)));
     }
