@@ -33,7 +33,8 @@ double texelAngle(const PrefilterRequest& request);
 Footprint footprintOf(const Lobe& lobe, double texel, int degree);
 
 /// Relative RMSE that a footprint's points leave, as measured for all layouts, 1 to 47 texels and
-/// lobes with horizons and without; of a texel ten times as much.
+/// lobes with horizons and without; of a texel ten times as much. Does not hold for peaks under
+/// lobes with horizons in maps of one to three texels an edge, which have few points.
 inline constexpr double kFootprintError = 5e-7;
 
 /// The footprint of one texel: the map's, but for ball maps, whose texels are the longer the nearer
