@@ -39,6 +39,8 @@ public:
     /// Its mass farther than that from the axis.
     double massBeyond(double h) const;
 
+    const Lobe& lobe() const { return lobe_; }
+
     double mass = 0;  ///< of all of it, at most 1
     double width = 0; ///< angle over which it varies near its axis
     double reach = 0; ///< angle

@@ -43,4 +43,22 @@ std::vector<PixelEdge> edgesOfNear(const Block& block) {
     return edges;
 }
 
+std::vector<Arc> pixelOutline(int width, int height, int column, int row) {
+    const double row_step = kPi / height, column_step = 2 * kPi / width;
+    const double top = row_step * row, bottom = top + row_step;
+    const double west = column_step * column, east = west + column_step;
+    std::vector<Arc> outline;
+    const auto add = [&](double theta, double psi, double to_theta, double to_psi) {
+        const auto place = [&](double t) {
+            return polarDirection(theta + (to_theta - theta) * t, psi + (to_psi - psi) * t);
+        };
+        addCurve(place, 0, 1, 1, kLongest, outline);
+    };
+    add(bottom, west, bottom, east);
+    add(bottom, east, top, east);
+    add(top, east, top, west);
+    add(top, west, bottom, west);
+    return outline;
+}
+
 } // namespace ibl

@@ -43,4 +43,7 @@ struct PixelEdge {
 /// All edges of the near pixels.
 std::vector<PixelEdge> edgesOfNear(const Block& block);
 
+/// The outline of a pixel of a width x height lat-long, which lies on the left.
+std::vector<Arc> pixelOutline(int width, int height, int column, int row);
+
 } // namespace ibl

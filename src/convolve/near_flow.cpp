@@ -138,14 +138,17 @@ bool isFlat(const NearField& field, const Arc& arc, double length) {
 /// int_e int_f Phi dx . dy, or of Psi.
 double contourSum(const NearField& field, Potential potential, const Arc& e, const Arc& f) {
     const double e_length = e.length(), f_length = f.length();
-    const double distance = (e.m - f.m).length() - 0.5 * (e_length + f_length);
+    const double between = (e.m - f.m).length(), half = 0.5 * (e_length + f_length);
+    const double distance = between - half;
     const double size = std::max(e_length, f_length);
     if (e_length == 0 || f_length == 0) return 0;
     const bool compact = potential == Potential::withoutArea;
     if (compact && distance > field.kernel.reach) return 0;
     const RadialTable& table = compact ? field.phi : field.psi;
     // Phi is a logarithm from 0 on, Psi is smooth over the kernel's width.
-    const double room = compact ? distance : std::max(distance, 0.0) + 0.5 * field.kernel.width;
+    const double room = compact ? distance
+                                : std::min(std::max(distance, 0.0) + 0.5 * field.kernel.width,
+                                           roomBesideRing(field, between, half));
     if (room > field.rules.two * size) return pairSum(table, twoPoints(e), twoPoints(f));
     if (room > field.rules.three * size) return pairSum(table, threePoints(e), threePoints(f));
     bool split_e = e_length >= f_length;
@@ -168,10 +171,13 @@ double contourSum(const NearField& field, Potential potential, const Arc& e, con
 double flowAcross(const NearField& field, Potential potential, const Texel& texel, const Arc& f) {
     const bool compact = potential == Potential::withoutArea;
     const double length = f.length(), size = std::max(1.4 * texel.radius, length);
-    const double distance = (f.m - texel.centre).length() - 0.5 * length - texel.radius;
+    const double between = (f.m - texel.centre).length(), half = 0.5 * length + texel.radius;
+    const double distance = between - half;
     if (length == 0 || (compact && distance > field.kernel.reach)) return 0;
     const RadialTable& swirl = compact ? field.outer_swirl : field.swirl;
-    const double room = compact ? distance : std::max(distance, 0.0) + 0.5 * field.kernel.width;
+    const double room = compact ? distance
+                                : std::min(std::max(distance, 0.0) + 0.5 * field.kernel.width,
+                                           roomBesideRing(field, between, half));
     if (room > field.rules.two * size) return turnSum(swirl, texel.four, twoPoints(f));
     if (room > field.rules.three * size) return turnSum(swirl, texel.nine, threePoints(f));
     double sum = 0;
@@ -182,14 +188,15 @@ double flowAcross(const NearField& field, Potential potential, const Texel& texe
 
 double flowAcross(const NearField& field, const V3d& x, const Arc& f) {
     const double length = f.length();
-    const double distance = (x - f.m).length() - 0.5 * length;
-    const double room = std::max(distance, 0.0) + 0.5 * field.kernel.width;
+    const double between = (x - f.m).length();
+    const double room = std::max(between - 0.5 * length, 0.0) + 0.5 * field.kernel.width;
+    const double ring_room = roomBesideRing(field, between, 0.5 * length);
     if (length == 0) return 0;
-    if (room > field.rules.three * length) {
+    if (std::min(room, ring_room) > field.rules.three * length) {
         const TexelPoint point{x, 1};
         return turnSum(field.swirl, {&point, 1}, threePoints(f));
     }
-    if (!isFlat(field, f, length)) {
+    if (ring_room < room || !isFlat(field, f, length)) {
         const auto [first, second] = f.halves();
         return flowAcross(field, x, first) + flowAcross(field, x, second);
     }

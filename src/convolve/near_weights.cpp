@@ -4,7 +4,6 @@
 #include "convolve/gauss.h"
 #include "convolve/near_edges.h"
 #include "convolve/near_flow.h"
-#include "convolve/peaks.h"
 #include "panorama/conventions.h"
 #include "panorama/layouts.h"
 #include "panorama/square_maps.h"
@@ -25,6 +24,8 @@ constexpr NearRules kRules[] = {
 
 /// Footprints shrunk below this of the texel's extent are taken at points.
 constexpr double kLeastOutline = 0.25;
+/// The same where the lobe is a ring along its horizon, which needs more points.
+constexpr double kLeastOutlineOfRing = 0.01;
 
 /// The outline of the texel shrunk to `scale`.
 std::vector<Arc> outlineOf(const MapExtent& map, int x, int y, double scale) {
@@ -69,6 +70,24 @@ std::vector<TexelPoint> pointsOf(const MapExtent& map, int x, int y, const Footp
     for (std::size_t i = 0; i < row.u.size(); ++i)
         points.push_back({polarDirection(kPi * row.v[i], 2 * kPi * row.u[i]), row.share[i]});
     return points;
+}
+
+/// The footprint of that scale; the whole sphere has no outline.
+Texel texelOf(const MapExtent& map, int x, int y, double scale) {
+    const auto [low, high] = ownPart(map.layout, map.width, map.height, x, y);
+    Texel texel{texelPlace(map, x, y, (low + high) * (0.5 * scale)),
+                0,
+                outlineOf(map, x, y, scale),
+                0,
+                pointsOf(map, x, y, {scale, scale > 0 ? 2 : 1}),
+                pointsOf(map, x, y, {scale, scale > 0 ? 3 : 1})};
+    for (const Arc& e : texel.outline)
+        texel.radius =
+            std::max({texel.radius, (e.a - texel.centre).length(), (e.m - texel.centre).length()});
+    const double own = solidAngle(texel.outline, texel.centre);
+    const double exact = partSolidAngle(map.layout, map.width, map.height, x, y);
+    texel.solid_angle = scale < 1 ? own : std::copysign(exact, own); // as the area filter
+    return texel;
 }
 
 /// Adds what a texel gets of its near pixels.
@@ -194,7 +213,9 @@ void addFar(Block& block, const V3d& centre, const Moments& texel, double radius
             const V2d u = azimuth[static_cast<std::size_t>(i)];
             const V3d pixel_centre(sin * u.x, sin * u.y, cos);
             const double from_centre2 = (pixel_centre - centre).length2();
-            if (from_centre2 < far * far) {
+            if (from_centre2 < far * far ||
+                (field.ring_room > 0 &&
+                 roomBesideRing(field, std::sqrt(from_centre2), radius + 0.5 * pixel) < far)) {
                 block.near[at] = 1;
                 continue;
             }
@@ -236,7 +257,10 @@ const NearRules& nearRules(double max_error) {
 
 NearField makeNearField(const NearKernel& kernel, const NearRules& rules, int probe_width,
                         int probe_height) {
-    const double m = kernel.mass, reach = kernel.reach, least = 1e-4 * kernel.width;
+    const bool is_ring = kernel.lobe().kernel == Kernel::charlie;
+    const double variation = lobeVariation(kernel.lobe());
+    const double m = kernel.mass, reach = kernel.reach;
+    const double least = (is_ring ? 1e-2 : 1e-4) * kernel.width; // nothing changes within a ring
     const auto chord2 = [](double t) { return std::pow(2 * std::sin(0.5 * t), 2); };
     const auto beyond = [&](double x) { // of the squared chord
         return x < chord2(reach) ? kernel.massBeyond(0.25 * x) : 0.0;
@@ -252,16 +276,16 @@ NearField makeNearField(const NearKernel& kernel, const NearRules& rules, int pr
         }
         return half * sum / (4 * kPi);
     };
-    constexpr double kStep = 0.1; // of log x
+    const double step = is_ring ? 0.5 * variation : 0.1; // of log x
     const double outermost = std::min(chord2(reach), 3.999);
     std::vector<double> steps{0.0};
-    for (double x = outermost; x > least * least; x *= std::exp(-kStep))
-        steps.push_back(steps.back() + rise(x * std::exp(-kStep), x));
+    for (double x = outermost; x > least * least; x *= std::exp(-step))
+        steps.push_back(steps.back() + rise(x * std::exp(-step), x));
     const auto phi = [&](double x) {
         if (x >= outermost) return 0.0;
-        const double at = std::log(outermost / x) / kStep;
+        const double at = std::log(outermost / x) / step;
         const std::size_t i = std::min(static_cast<std::size_t>(at), steps.size() - 1);
-        const double node = outermost * std::exp(-kStep * static_cast<double>(i));
+        const double node = outermost * std::exp(-step * static_cast<double>(i));
         // Within the innermost, m log.
         return steps[i] +
                (i + 1 < steps.size() ? rise(x, node) : m * std::log(node / x) / (4 * kPi));
@@ -272,19 +296,24 @@ NearField makeNearField(const NearKernel& kernel, const NearRules& rules, int pr
     const auto spread = [&](double x) { return beyond(x) / std::max(1e-9, 1 - 0.25 * x); };
     const auto swirl = [&](double x) { return (m - spread(x)) / (2 * kPi * x); };
     const auto outer_swirl = [&](double x) { return -spread(x) / (2 * kPi * x); };
+    const int bits = is_ring ? static_cast<int>(std::ceil(std::log2(16 / variation))) : 5;
+    // It grows as exp(4 t / variation): exp(-15) of it lies before.
+    const double ring_from = 2 * std::sin(0.5 * std::max(0.0, 0.5 * kPi - 3.75 * variation));
     using enum RadialTable::Beyond;
     const double x0 = least * least, x1 = chord2(reach);
     const auto within = [&](double t) { return m - beyond(chord2(t)); };
     const auto at_angle = [&](double t) { return phi(t * t); };
     return {kernel,
             rules,
-            RadialTable(value, x0, 4, constant),
-            RadialTable(phi, x0, x1, zero),
-            RadialTable(psi, x0, 4, constant),
-            RadialTable(swirl, x0, 4, constant),
-            RadialTable(outer_swirl, x0, x1, zero),
+            RadialTable(value, x0, 4, constant, bits),
+            RadialTable(phi, x0, x1, zero, bits),
+            RadialTable(psi, x0, 4, constant, bits),
+            RadialTable(swirl, x0, 4, constant, bits),
+            RadialTable(outer_swirl, x0, x1, zero, bits),
             EdgeTable(within, at_angle, std::min(kernel.width, rules.flat), reach, 6 * rules.flat,
                       rules.nodes),
+            is_ring ? ring_from : 0,
+            is_ring ? 0.5 * variation : 0,
             probe_width,
             probe_height};
 }
@@ -294,44 +323,51 @@ NearWeights nearWeights(const NearField& field, const MapExtent& map, int x, int
     NearWeights weights;
     const Footprint footprint = footprintOfTexel(of_map, map.layout, map.width, x, y);
     const double scale = footprint.scale;
-    const auto [low, high] = ownPart(map.layout, map.width, map.height, x, y);
-    const V3d centre = texelPlace(map, x, y, (low + high) * (0.5 * scale));
-    const std::vector<Arc> outline = outlineOf(map, x, y, scale);
-    if (outline.empty()) { // the whole sphere in one texel
+    const Texel texel = texelOf(map, x, y, scale);
+    if (texel.outline.empty()) { // the whole sphere in one texel
         weights.area = field.kernel.mass;
         return weights;
     }
-    double radius = 0;
-    for (const Arc& e : outline)
-        radius = std::max({radius, (e.a - centre).length(), (e.m - centre).length()});
-    setBlock(field, outline, centre, weights);
+    // A ring's mass lies far from the texel, wherever that is.
+    const bool compact = scale == 1 && field.ring_room == 0;
+    setBlock(field, texel.outline, texel.centre, weights);
     Block block{field, weights, {}};
-    const std::vector<TexelPoint> four = pointsOf(map, x, y, {scale, scale > 0 ? 2 : 1});
-    addFar(block, centre, momentsOf(four, centre), radius);
-    if (scale >= kLeastOutline) {
-        const double own = solidAngle(outline, centre);
-        const double exact = partSolidAngle(map.layout, map.width, map.height, x, y);
-        const double solid_angle =
-            scale < 1 ? own : std::copysign(exact, own); // as the area filter
-        const std::vector<TexelPoint> nine = pointsOf(map, x, y, {scale, 3});
-        const Texel texel{centre, radius, outline, solid_angle, four, nine};
-        addTexel(block, texel, scale < 1 ? Potential::withArea : Potential::withoutArea);
+    addFar(block, texel.centre, momentsOf(texel.four, texel.centre), texel.radius);
+    if (scale >= (field.ring_room > 0 ? kLeastOutlineOfRing : kLeastOutline)) {
+        addTexel(block, texel, compact ? Potential::withoutArea : Potential::withArea);
     } else {
         // Beside a sun pixels' masses need one point more than footprintOf's, which are for lobes.
         addPoints(block, pointsOf(map, x, y, {scale, footprint.samples + (scale > 0 ? 1 : 0)}));
     }
-    if (scale < 1) addEven(block, field.kernel.mass);
+    if (!compact) addEven(block, field.kernel.mass);
     double sum = 0;
     for (const double w : weights.weight)
         sum += w;
     // Between what is near and what is far the sums are of two kinds.
-    if (scale == 1) {
+    if (compact) {
         weights.area = field.kernel.mass - sum;
     } else {
         for (double& w : weights.weight)
             w *= field.kernel.mass / sum;
     }
     return weights;
+}
+
+std::vector<double> peakMasses(const NearField& field, const MapExtent& map, int x, int y,
+                               const Footprint& of_map, std::span<const Peak> peaks) {
+    const Footprint footprint = footprintOfTexel(of_map, map.layout, map.width, x, y);
+    const Texel texel = texelOf(map, x, y, footprint.scale);
+    std::vector<double> masses;
+    for (const Peak& peak : peaks) {
+        const double area = latlongPixelSolidAngle(field.width, field.height, peak.row);
+        double mass = field.kernel.mass * area / (4 * kPi);
+        // Without an outline the texel is the whole sphere.
+        if (!texel.outline.empty())
+            for (const Arc& f : pixelOutline(field.width, field.height, peak.column, peak.row))
+                mass += flowAcross(field, Potential::withArea, texel, f);
+        masses.push_back(mass);
+    }
+    return masses;
 }
 
 } // namespace ibl

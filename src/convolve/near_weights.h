@@ -23,10 +23,14 @@
 
 #include "convolve/edge_table.h"
 #include "convolve/narrow.h"
+#include "convolve/peaks.h"
 #include "convolve/radial_table.h"
 #include "convolve/texels.h"
 #include "image/image.h"
 
+#include <algorithm>
+#include <numbers>
+#include <span>
 #include <vector>
 
 namespace ibl {
@@ -56,9 +60,22 @@ struct NearField {
     RadialTable swirl;       ///< (M - m sin^2(t/2)) / (2 pi sin^2 t)
     RadialTable outer_swirl; ///< (M - m) / (2 pi sin^2 t)
     EdgeTable table;
+    /// A ring along the horizon (Charlie): the chord at which it begins, and half of the chord over
+    /// which it varies; 0 where there is none.
+    double ring_from, ring_room;
     int width; ///< of the probe
     int height;
 };
+
+/// Beside which length, by the rules, two things must be short whose middles are `between` apart
+/// and that reach `half` from there together: where a lobe is a ring, about the ring's width or
+/// what lies between them and it, otherwise any.
+inline double roomBesideRing(const NearField& field, double between, double half) {
+    if (field.ring_room == 0) return 1e3;
+    const double before = field.ring_from - (between + half);
+    const double behind = between - half - std::numbers::sqrt2;
+    return std::max({before, behind, 0.0}) + field.ring_room;
+}
 
 NearField makeNearField(const NearKernel& kernel, const NearRules& rules, int probe_width,
                         int probe_height);
@@ -76,5 +93,10 @@ struct NearWeights {
 /// Of texel (x, y) of a map. The weights and `area` sum to the kernel's mass.
 NearWeights nearWeights(const NearField& field, const MapExtent& map, int x, int y,
                         const Footprint& of_map);
+
+/// The mean over the footprint of texel (x, y) of the kernel's mass over each peak's pixel, by
+/// their outlines. The kernel is as wide as the texel, about, or wider.
+std::vector<double> peakMasses(const NearField& field, const MapExtent& map, int x, int y,
+                               const Footprint& of_map, std::span<const Peak> peaks);
 
 } // namespace ibl

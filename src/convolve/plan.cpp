@@ -28,10 +28,11 @@ constexpr int kTailBands = 64;
 
 /// Nanoseconds on one core, measured.
 struct Costs {
-    static constexpr double kLegendre = 0.4;  ///< a cubed degree, analysis or synthesis
-    static constexpr double kGrid = 300;      ///< a squared degree: transforms of the synthesis
-    static constexpr double kPeak = 40;       ///< a peak and a point, by Gauss points
-    static constexpr double kPeakEdges = 800; ///< the same by edges, where lobes are narrow
+    static constexpr double kLegendre = 0.4;     ///< a cubed degree, analysis or synthesis
+    static constexpr double kGrid = 300;         ///< a squared degree: transforms of the synthesis
+    static constexpr double kPeak = 40;          ///< a peak and a point, by Gauss points
+    static constexpr double kPeakEdges = 800;    ///< the same by edges, where lobes are narrow
+    static constexpr double kPeakOutlines = 3e4; ///< a peak and a texel (peak_map.h)
 };
 
 /// Outweighs any cost: a lobe whose error cannot be kept within kMostDegree.
@@ -61,8 +62,10 @@ double costOf(const std::vector<int>& degrees, std::span<const PrefilterRequest>
         const Footprint footprint =
             footprintOf(requests[i].lobe, texelAngle(requests[i]), kAnyDegree);
         const bool smooth = 2 * pixel < lobeWidth(requests[i].lobe);
-        cost += (smooth ? Costs::kPeak : Costs::kPeakEdges) * peaks * texelCount(requests[i]) *
-                footprint.samples * footprint.samples;
+        const double at_points =
+            (smooth ? Costs::kPeak : Costs::kPeakEdges) * footprint.samples * footprint.samples;
+        cost += (isCrossedByHorizons(footprint) ? Costs::kPeakOutlines : at_points) * peaks *
+                texelCount(requests[i]);
         most = std::max(most, degrees[i]);
     }
     return cost + Costs::kLegendre * cube(most);

@@ -5,6 +5,7 @@
 #include "convolve/error_bound.h"
 #include "convolve/evaluate.h"
 #include "convolve/near_map.h"
+#include "convolve/peak_map.h"
 #include "convolve/plan.h"
 #include "convolve/synthesis.h"
 #include "convolve/texels.h"
@@ -61,7 +62,7 @@ struct Ingredients {
     const MapValues* at_points = nullptr; ///< in place of `field`
     const PeakSum* peaks = nullptr;
     const DirectSum* direct = nullptr;
-    const Image* near = nullptr; ///< added to all that
+    const Image* map = nullptr; ///< added to all that
 };
 
 struct Probe {
@@ -102,7 +103,7 @@ void fillRow(const Probe& probe, const PrefilterRequest& request, const Footprin
             for (std::size_t i = points.first[t]; i < points.first[t + 1]; ++i)
                 value += points.share[i] * values[3 * i + c];
             value /= probe.scale;
-            if (parts.near) value += parts.near->at(points.column[t], y)[c];
+            if (parts.map) value += parts.map->at(points.column[t], y)[c];
             // Rounding and the truncated tails may leave a little below zero beside a sun; a mean
             // of non-negative radiance is not.
             if (!probe.negative) value = std::max(0.0, value);
@@ -240,9 +241,12 @@ PrefilterResult byHarmonics(const Engine& engine, const PrefilterRequest& reques
     const std::vector<double> beyond = energyBeyond(engine.power, engine.clamped_energy);
     const double allowed = allowedNorm(engine.statistics, request, lobe.k, max_error);
     const int degree = std::min(lobe.degree, leastDegree(lobe.k, lobe.degree, allowed, beyond));
-    // Peaks have no highest degree.
-    const int highest = engine.peaks.empty() ? degree : kAnyDegree;
-    const Footprint footprint = footprintOf(request.lobe, texelAngle(request), highest);
+    const double texel = texelAngle(request);
+    const Footprint of_peaks = footprintOf(request.lobe, texel, kAnyDegree);
+    const bool apart = isCrossedByHorizons(of_peaks);
+    const Footprint footprint = engine.peaks.empty() || apart
+                                    ? footprintOf(request.lobe, texel, degree)
+                                    : of_peaks; // they have no highest degree
     Ingredients parts;
     SmoothField field;
     MapValues at_points;
@@ -256,9 +260,20 @@ PrefilterResult byHarmonics(const Engine& engine, const PrefilterRequest& reques
         parts.field = &field;
     }
     result.seconds_synthesis = watch.seconds();
-    const PeakSum peaks = makePeakSum(engine.peaks, engine.probe.image.width,
-                                      engine.probe.image.height, request.lobe);
-    parts.peaks = &peaks;
+    const Image& probe = engine.probe.image;
+    Image peak_map;
+    std::optional<PeakSum> peaks;
+    double outlines_error = 0;
+    if (apart && !engine.peaks.empty()) {
+        const NearRules& rules = nearRules(max_error);
+        peak_map = peakMap(engine.peaks, engine.probe.scale, probe.width, probe.height, request,
+                           of_peaks, rules, threads);
+        outlines_error = rules.error;
+        parts.map = &peak_map;
+    } else {
+        peaks = makePeakSum(engine.peaks, probe.width, probe.height, request.lobe);
+        parts.peaks = &*peaks;
+    }
     MapNorm norm;
     fillMap(engine.probe, request, footprint, parts, threads, result.map, norm);
     result.band_limit = degree;
@@ -268,10 +283,10 @@ PrefilterResult byHarmonics(const Engine& engine, const PrefilterRequest& reques
         relativeError(error, norm.root() * engine.probe.scale, norm.texels());
     const bool by_points = norm.root() > 0 && (footprint.samples > 1 || isBallMap(request.layout));
     const double within = by_points ? kFootprintError : 0;
-    result.error_bound = relative_error.bound + within;
-    result.error_estimate = std::hypot(relative_error.estimate, within / 3);
+    result.error_bound = std::hypot(relative_error.bound + within, outlines_error);
+    result.error_estimate = std::hypot(relative_error.estimate, within / 3, outlines_error / 3);
     const double mean = norm.absolute() * engine.probe.scale / (12 * kPi);
-    result.worst_bound = relative(error.pointwise, mean) + 10 * within;
+    result.worst_bound = relative(error.pointwise, mean) + 10 * (within + outlines_error);
     result.seconds_spatial = watch.seconds() - result.seconds_synthesis;
     return result;
 }
@@ -294,7 +309,7 @@ PrefilterResult inTwoParts(const Engine& engine, const PrefilterRequest& request
     const NearRules& rules = nearRules(max_error);
     const NearField near_field = makeNearField(split.near, rules, probe.width, probe.height);
     const Image near = nearMap(engine.probe.panorama, near_field, request, near_footprint, threads);
-    parts.near = &near;
+    parts.map = &near;
     MapNorm norm;
     fillMap(engine.probe, request, footprintOf(request.lobe, texel, split.degree), parts, threads,
             result.map, norm);

@@ -3,13 +3,16 @@
 namespace ibl {
 
 RadialTable::RadialTable(const std::function<double(double x)>& function, double least, double most,
-                         Beyond beyond)
-    : first_(static_cast<std::int64_t>(std::bit_cast<std::uint64_t>(least) >> kShift)),
+                         Beyond beyond, int part_bits)
+    : shift_(52 - part_bits),
+      mask_((std::uint64_t{1} << shift_) - 1),
+      unit_(1.0 / static_cast<double>(std::int64_t{1} << shift_)),
+      first_(static_cast<std::int64_t>(std::bit_cast<std::uint64_t>(least) >> shift_)),
       most_(most),
       inside_(function(least)),
       outside_(beyond == Beyond::zero ? 0 : function(most)) {
-    const auto edge = [](std::int64_t at) {
-        return std::bit_cast<double>(static_cast<std::uint64_t>(at) << kShift);
+    const auto edge = [this](std::int64_t at) {
+        return std::bit_cast<double>(static_cast<std::uint64_t>(at) << shift_);
     };
     double at_from = function(edge(first_));
     for (std::int64_t at = first_; edge(at) < most; ++at) {

@@ -116,20 +116,17 @@ void transformRings(const LaneVector<double>& spectra, const std::vector<double>
     });
 }
 
-/// kLanes rings of kLanes pixels' worth of one column: a 4 x 4 transposition.
+/// kLanes rings of one column: rows become pixels. Converted before they are transposed, doubles
+/// would go from memory to half a register: the compiler then sees no wide register to clear, but
+/// the processor does, and all code for the baseline after that runs several times slower.
 IBL_INLINE void storeColumn(const Lanes& r, const Lanes& g, const Lanes& b, float* out,
                             std::size_t row) {
-    const Pixel x = __builtin_convertvector(r, Pixel), y = __builtin_convertvector(g, Pixel),
-                z = __builtin_convertvector(b, Pixel), zero = {};
-    const Pixel xy0 = __builtin_shufflevector(x, y, 0, 4, 1, 5),
-                xy1 = __builtin_shufflevector(x, y, 2, 6, 3, 7),
-                z0 = __builtin_shufflevector(z, zero, 0, 4, 1, 5),
-                z1 = __builtin_shufflevector(z, zero, 2, 6, 3, 7);
-    const Pixel pixels[kLanes] = {
-        __builtin_shufflevector(xy0, z0, 0, 1, 4, 5), __builtin_shufflevector(xy0, z0, 2, 3, 6, 7),
-        __builtin_shufflevector(xy1, z1, 0, 1, 4, 5), __builtin_shufflevector(xy1, z1, 2, 3, 6, 7)};
-    for (int lane = 0; lane < kLanes; ++lane)
-        __builtin_memcpy(out + lane * row, &pixels[lane], sizeof(Pixel));
+    Lanes pixels[kLanes] = {r, g, b, Lanes{}};
+    transpose(pixels);
+    for (int lane = 0; lane < kLanes; ++lane) {
+        const Pixel pixel = __builtin_convertvector(pixels[lane], Pixel);
+        __builtin_memcpy(out + lane * row, &pixel, sizeof(Pixel));
+    }
 }
 
 IBL_MULTIVERSION

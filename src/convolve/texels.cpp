@@ -43,6 +43,18 @@ GaussRule footprintRule(int n) {
 constexpr double kPoints = 1 << 15;
 /// Enough for any texel: the waves that would need more are weak in its mean.
 constexpr double kMostSamples = 768;
+/// Where a peak is evaluated at every point: more only if the lobe asks for it.
+constexpr double kMostOfPeaks = 16;
+
+/// Points along a texel's edge that a lobe needs of which it is so many diameters wide.
+double samplesForLobe(double diameters) {
+    return 3 + 7.5 * diameters;
+}
+
+/// Of few texels more than that: a lobe's horizon crosses them.
+double samplesOfFewTexels(double texel) {
+    return std::sqrt(kPoints / (4 * kPi)) * texel;
+}
 
 /// For texels of that extent in a map of texels of that angle, `density` times as many points as
 /// smooth ones need.
@@ -52,12 +64,11 @@ Footprint footprintFor(double lobe_diameter, double texel, int degree, double ex
                         degree};
     if (footprint.scale > 0) {
         const double covered = footprint.scale * extent;
-        const double for_lobe = density * (3 + 7.5 * covered / lobe_diameter);
+        const double for_lobe = density * samplesForLobe(covered / lobe_diameter);
         const double for_waves = density * (3 + 1.8 * covered * degree / kPi); // Gauss: pi a wave
-        // Of few texels more than that: a lobe's horizon crosses them. Peaks, of which there may be
-        // as many as pixels, cost too much at so many.
-        const double few_texels = std::sqrt(kPoints / (4 * kPi)) * texel;
-        const double many = degree == kAnyDegree ? std::min(few_texels, 16.0) : few_texels;
+        // Peaks, of which there may be as many as pixels, cost too much at so many (peak_map.h).
+        const double few_texels = samplesOfFewTexels(texel);
+        const double many = degree == kAnyDegree ? std::min(few_texels, kMostOfPeaks) : few_texels;
         const double samples = std::min({std::max(for_lobe, many), for_waves, kMostSamples});
         footprint.samples = std::max(2, static_cast<int>(std::ceil(samples)));
     }
@@ -174,6 +185,12 @@ double texelAngle(const PrefilterRequest& request) {
 
 Footprint footprintOf(const Lobe& lobe, double texel, int degree) {
     return footprintFor(2 * lobeWidth(lobe), texel, degree, texel, 1);
+}
+
+bool isCrossedByHorizons(const Footprint& of_map) {
+    const double diameters = of_map.scale * of_map.texel / of_map.lobe_diameter;
+    return of_map.scale > 0 &&
+           samplesOfFewTexels(of_map.texel) > std::max(kMostOfPeaks, samplesForLobe(diameters));
 }
 
 Footprint footprintOfTexel(const Footprint& of_map, Layout layout, int size, int x, int y) {

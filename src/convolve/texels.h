@@ -32,9 +32,12 @@ double texelAngle(const PrefilterRequest& request);
 /// field's highest degree falls between them.
 Footprint footprintOf(const Lobe& lobe, double texel, int degree);
 
+/// Whether texels are so large, beside the lobe's width too, that a horizon crossing them asks for
+/// more points than are worth evaluating peaks at.
+bool isCrossedByHorizons(const Footprint& of_map);
+
 /// Relative RMSE that a footprint's points leave, as measured for all layouts, 1 to 47 texels and
-/// lobes with horizons and without; of a texel ten times as much. Does not hold for peaks under
-/// lobes with horizons in maps of one to three texels an edge, which have few points.
+/// lobes with horizons and without; of a texel ten times as much.
 inline constexpr double kFootprintError = 5e-7;
 
 /// The footprint of one texel: the map's, but for ball maps, whose texels are the longer the nearer

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace ibl {
@@ -41,31 +42,39 @@ TEST(PrefilterLayouts, FurnaceIsOneInEveryLayout) {
 }
 
 /// A sun where ball maps have their rim, where the octahedral map has its corners, at the pole of
-/// lat-longs and where faces meet.
+/// lat-longs and where faces meet; one a channel.
 TEST(PrefilterLayouts, NarrowLobesKeepALoneSunsEnergyInEveryLayout) {
     constexpr int kHeight = 24;
-    for (const auto& [column, row] : {std::pair{0, 12}, {47, 11}, {19, 23}, {3, 0}, {18, 16}}) {
+    constexpr std::array<std::array<V2i, 3>, 2> kSuns{
+        {{V2i(0, 12), V2i(47, 11), V2i(19, 23)}, {V2i(3, 0), V2i(18, 16), V2i(33, 8)}}};
+    for (const std::array<V2i, 3>& suns : kSuns) {
         Image probe(2 * kHeight, kHeight);
         std::ranges::fill(probe.pixels, 0.0f);
-        probe.at(column, row)[1] = 1e9f;
-        const double total = 1e9 * latlongPixelSolidAngle(2 * kHeight, kHeight, row);
+        for (int c = 0; c < 3; ++c)
+            probe.at(suns[c].x, suns[c].y)[c] = 1e9f;
         for (const std::string& name : layoutNames()) {
             const Layout layout = *layoutFromName(name);
             for (const auto& [roughness, size] : {std::pair{0.001, 8}, {0.06, 8}, {0.06, 1}}) {
                 const PrefilterRequest request{{Kernel::ggx, roughness}, layout, size};
                 const Image map =
                     prefilter({Layout::latlong, probe}, {&request, 1}, {})[0].map.image;
-                double energy = 0;
+                double energy[3] = {0, 0, 0};
                 for (int y = 0; y < map.height; ++y) {
                     for (int x = 0; x < map.width; ++x) {
-                        const float value = map.at(x, y)[1];
-                        EXPECT_GE(value, 0);
-                        energy += value * texelSolidAngle(layout, map.width, map.height, x, y);
+                        const double area = texelSolidAngle(layout, map.width, map.height, x, y);
+                        for (int c = 0; c < 3; ++c) {
+                            EXPECT_GE(map.at(x, y)[c], 0);
+                            energy[c] += map.at(x, y)[c] * area;
+                        }
                     }
                 }
-                EXPECT_NEAR(energy / total, 1, isSquareMap(layout) ? 4e-4 : 1e-5)
-                    << name << " " << roughness << " size " << size << " sun at " << column << " "
-                    << row;
+                for (int c = 0; c < 3; ++c) {
+                    const double total =
+                        1e9 * latlongPixelSolidAngle(2 * kHeight, kHeight, suns[c].y);
+                    EXPECT_NEAR(energy[c] / total, 1, isSquareMap(layout) ? 4e-4 : 1e-5)
+                        << name << " " << roughness << " size " << size << " sun at " << suns[c].x
+                        << " " << suns[c].y;
+                }
             }
         }
     }
@@ -114,6 +123,24 @@ TEST(PrefilterLayouts, CoarseSquareMapsAreTheReferences) {
             const PrefilterRequest request{{Kernel::phong, 200}, layout, size};
             EXPECT_LT(errorToReference(probe, request, 2e-6), 1e-6)
                 << layoutName(layout) << ' ' << size;
+        }
+    }
+}
+
+/// A lone sun in maps of so few texels that the lobe's horizon crosses them.
+TEST(PrefilterLayouts, FewLargeTexelsUnderASunAreTheReferences) {
+    for (const auto& [column, row] : {std::pair{13, 9}, {40, 16}, {63, 27}}) {
+        Image probe(64, 32);
+        std::ranges::fill(probe.pixels, 0.0f);
+        std::ranges::fill_n(probe.at(column, row), 3, 1e9f);
+        for (const Lobe lobe : {Lobe{Kernel::lambert, 0}, Lobe{Kernel::ggx, 0.7}}) {
+            for (const Layout layout : {Layout::faces, Layout::latlong, Layout::exrLatlong,
+                                        Layout::octahedral, Layout::angular}) {
+                const PrefilterRequest request{lobe, layout, 1};
+                EXPECT_LT(errorToReference(probe, request, 1e-5), 4e-6)
+                    << layoutName(layout) << " kernel " << int(lobe.kernel) << " sun at " << column
+                    << ' ' << row;
+            }
         }
     }
 }

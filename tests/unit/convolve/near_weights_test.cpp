@@ -84,5 +84,55 @@ TEST(NearWeights, OfWideLobesAreTheMeansOfTheirValues) {
     }
 }
 
+/// A texel as large as the lobe, whose horizon or ring crosses it. On lat-longs the truth is the
+/// lobe's mass over the footprint, by its edges (edges.h), seen from points of the pixel.
+TEST(NearWeights, PeaksInTexelsThatAHorizonCrosses) {
+    const Lobe lobes[] = {{Kernel::lambert, 0}, {Kernel::ggx, 1},       {Kernel::ggx, 0.4},
+                          {Kernel::phong, 3},   {Kernel::charlie, 0.3}, {Kernel::charlie, 0.1}};
+    std::vector<Peak> peaks;
+    for (int j = 0; j < kHeight; j += 2)
+        for (int i = j % 7; i < kWidth; i += 7)
+            peaks.push_back({i, j, {1, 1, 1}});
+    for (const Lobe& lobe : lobes) {
+        const bool thin = lobe.kernel == Kernel::charlie && lobe.parameter < 0.2;
+        const GaussRule& rule = gaussRule(thin ? 30 : 8);
+        const NearField field =
+            makeNearField(NearKernel(lobe, 0, 0), nearRules(1e-5), kWidth, kHeight);
+        const LobeMassBeyond beyond(lobe);
+        const auto q = [&](double h) { return -beyond(h); };
+        const Disc disc{lobeReach(lobe), lobeVariation(lobe)};
+        for (const int size : {1, 2}) {
+            const MapExtent map{Layout::latlong, 2 * size, size,
+                                texelAngle({lobe, Layout::latlong, size})};
+            const Footprint footprint = footprintOf(lobe, map.texel, kAnyDegree);
+            if (footprint.scale == 0) continue;
+            const double s = 0.5 * footprint.scale, step = kPi / size;
+            const Rectangle texel{step * (0.5 - s), step * (0.5 + s), step * (0.5 - s),
+                                  step * (0.5 + s)};
+            const double texel_area =
+                (std::cos(texel.top) - std::cos(texel.bottom)) * (texel.east - texel.west);
+            const std::vector<double> masses = peakMasses(field, map, 0, 0, footprint, peaks);
+            double off = 0, all = 0;
+            for (std::size_t p = 0; p < peaks.size(); ++p) {
+                double mass = 0, total = 0;
+                for (std::size_t b = 0; b < rule.nodes.size(); ++b) {
+                    const double v = (peaks[p].row + 0.5 + 0.5 * rule.nodes[b]) / kHeight;
+                    for (std::size_t a = 0; a < rule.nodes.size(); ++a) {
+                        const double u = (peaks[p].column + 0.5 + 0.5 * rule.nodes[a]) / kWidth;
+                        const double weight = rule.weights[a] * rule.weights[b] * std::sin(kPi * v);
+                        mass += weight * rectangleMass(q, 1, disc, makeAxis(u, v), texel);
+                        total += weight;
+                    }
+                }
+                mass *= latlongPixelSolidAngle(kWidth, kHeight, peaks[p].row) / total / texel_area;
+                off += std::abs(masses[p] - mass);
+                all += mass;
+            }
+            EXPECT_LT(off, 1e-6 * all)
+                << "kernel " << int(lobe.kernel) << " " << lobe.parameter << ", map of " << size;
+        }
+    }
+}
+
 } // namespace
 } // namespace ibl

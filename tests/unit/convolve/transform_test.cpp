@@ -7,10 +7,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <random>
+
+#if defined(__x86_64__)
+#include <cpuid.h>
+#endif
 
 namespace ibl {
 namespace {
@@ -268,6 +274,42 @@ TEST(Synthesis, InterpolationStaysWithinItsBound) {
     EXPECT_LT(interpolationError(degree, degree), 1e-5);
     EXPECT_LT(interpolationError(degree / 2, degree), 2e-6);
 }
+
+#if defined(__x86_64__)
+/// Whether the processor holds something in the upper halves of its wide registers, which slows
+/// baseline code down several times; nothing where it does not tell.
+std::optional<bool> wideRegistersAreInUse() {
+    unsigned a = 0, b = 0, c = 0, d = 0;
+    if (!__builtin_cpu_is("intel") || !__get_cpuid_count(0xd, 1, &a, &b, &c, &d) || !(a & 4))
+        return {};
+    __asm__ volatile("xgetbv" : "=a"(a), "=d"(d) : "c"(1));
+    return (a & 4) != 0;
+}
+
+TEST(Transforms, LeaveNoWideRegisterInUse) {
+    if (wideRegistersAreInUse() != false) GTEST_SKIP() << "the processor does not tell";
+    const int degree = 60;
+    Image probe(256, 128);
+    std::ranges::fill(probe.pixels, 1.0f);
+    const auto clean = [] { return wideRegistersAreInUse() == false; };
+    const RowSpectrum rows = analyseRows(probe, 1, 2, degree, 1);
+    EXPECT_TRUE(clean()) << "rows";
+    const Harmonics harmonics = analyse(rows, degree, 1);
+    EXPECT_TRUE(clean()) << "analysis";
+    const std::vector<double> ones(degree + 1, 1.0), at{0.1, 0.6};
+    const SmoothField field = synthesise(harmonics, ones, degree, 1);
+    EXPECT_TRUE(clean()) << "synthesis";
+    std::vector<float> sampled(6);
+    sampleField(field, at.data(), at.data(), 2, sampled.data());
+    EXPECT_TRUE(clean()) << "sampling";
+    std::vector<double> values(6);
+    evaluateField(harmonics, ones, degree, at.data(), at.data(), 2, 1, values.data());
+    EXPECT_TRUE(clean()) << "evaluation";
+    std::vector<double> grid(std::size_t{3} * 64 * 128);
+    synthesiseGrid(harmonics, ones, degree, 64, 1, grid.data());
+    EXPECT_TRUE(clean()) << "grid";
+}
+#endif
 
 } // namespace
 } // namespace ibl
