@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace ibl {
 namespace {
@@ -90,25 +91,33 @@ Texel texelOf(const MapExtent& map, int x, int y, double scale) {
     return texel;
 }
 
-/// Adds what a texel gets of its near pixels.
-void addTexel(const Block& block, const Texel& texel, Potential potential) {
-    for (const PixelEdge& f : edgesOfNear(block)) {
-        const double flow = flowAcross(block.field, potential, texel, f.arc);
-        block.add(f.before, flow);
-        block.add(f.after, -flow);
+/// What pieces of pixels' outlines carry to a texel's footprint: by its outline, or where it is
+/// small beside the kernel by points, of whose sum less is lost in a division by its solid angle.
+class Flow {
+public:
+    Flow(const NearField& field, const MapExtent& map, int x, int y, const Footprint& footprint,
+         const Texel& texel, Potential potential)
+        : field_(field), texel_(texel), potential_(potential) {
+        const double scale = footprint.scale;
+        if (scale >= (field.ring_room > 0 ? kLeastOutlineOfRing : kLeastOutline)) return;
+        // Beside a sun pixels' masses need one point more than footprintOf's, which are for lobes.
+        points_ = pointsOf(map, x, y, {scale, footprint.samples + (scale > 0 ? 1 : 0)});
     }
-}
 
-/// The same by points.
-void addPoints(const Block& block, const std::vector<TexelPoint>& points) {
-    for (const PixelEdge& f : edgesOfNear(block)) {
+    double across(const Arc& f) const {
+        if (points_.empty()) return flowAcross(field_, potential_, texel_, f);
         double flow = 0;
-        for (const TexelPoint& x : points)
-            flow += x.share * flowAcross(block.field, x.at, f.arc);
-        block.add(f.before, flow);
-        block.add(f.after, -flow);
+        for (const TexelPoint& x : points_)
+            flow += x.share * flowAcross(field_, x.at, f);
+        return flow;
     }
-}
+
+private:
+    const NearField& field_;
+    const Texel& texel_;
+    Potential potential_;
+    std::vector<TexelPoint> points_;
+};
 
 /// Adds to every near pixel its part of a mass spread evenly over the sphere.
 void addEven(const Block& block, double mass) {
@@ -159,90 +168,102 @@ void setBlock(const NearField& field, const std::vector<Arc>& outline, const V3d
     weights.weight.assign(static_cast<std::size_t>(weights.rows) * weights.columns, 0.0);
 }
 
-/// A texel's mean direction, which lies within the sphere, and the half sides of the parallelogram
-/// that has its second moments.
-struct Moments {
-    V3d mean, a, b;
+/// Gauss points over pixels: those of each row and of each column of a block.
+class PixelGrid {
+public:
+    PixelGrid(const NearField& field, const NearWeights& weights, int n)
+        : rule_(gaussRule(n)), row_step_(kPi / field.height) {
+        for (int i = 0; i < weights.columns; ++i) {
+            for (const double node : rule_.nodes) {
+                const double psi = 2 * kPi / field.width * (weights.column + i + 0.5 + 0.5 * node);
+                azimuths_.emplace_back(std::cos(psi), std::sin(psi));
+            }
+            const double middle = 2 * kPi / field.width * (weights.column + i + 0.5);
+            middles_.emplace_back(std::cos(middle), std::sin(middle));
+        }
+        setRow(weights.row);
+    }
+
+    /// Cosine and sine of the middle of a column.
+    const V2d& middleOf(int column) const { return middles_[static_cast<std::size_t>(column)]; }
+
+    void setRow(int row) {
+        thetas_.clear();
+        double total = 0;
+        for (std::size_t b = 0; b < rule_.nodes.size(); ++b) {
+            const double theta = row_step_ * (row + 0.5 + 0.5 * rule_.nodes[b]);
+            thetas_.push_back({std::sin(theta), std::cos(theta), 0});
+            thetas_.back().share = 0.5 * rule_.weights[b] * thetas_.back().sine;
+            total += thetas_.back().share;
+        }
+        for (Theta& theta : thetas_)
+            theta.share /= total;
+    }
+
+    /// The mean of the kernel over the pixel in that column and over the texel's points.
+    double meanOf(const RadialTable& value, int column,
+                  const std::vector<TexelPoint>& texel) const {
+        const std::size_t n = rule_.nodes.size(), first = static_cast<std::size_t>(column) * n;
+        double mean = 0;
+        for (const Theta& theta : thetas_) {
+            for (std::size_t a = 0; a < n; ++a) {
+                const V2d u = azimuths_[first + a] * theta.sine;
+                const V3d d(u.x, u.y, theta.cosine);
+                double sum = 0;
+                for (const TexelPoint& x : texel)
+                    sum += x.share * value((d - x.at).length2());
+                mean += 0.5 * rule_.weights[a] * theta.share * sum;
+            }
+        }
+        return mean;
+    }
+
+private:
+    struct Theta {
+        double sine, cosine, share;
+    };
+    const GaussRule& rule_;
+    double row_step_;
+    std::vector<V2d> azimuths_, middles_;
+    std::vector<Theta> thetas_;
 };
 
-Moments momentsOf(const std::vector<TexelPoint>& points, const V3d& centre) {
-    Moments moments{V3d(0), V3d(0), V3d(0)};
-    for (const TexelPoint& p : points)
-        moments.mean += p.at * p.share;
-    const V3d side = std::abs(centre.z) < 0.9 ? V3d(0, 0, 1) : V3d(1, 0, 0);
-    const V3d x = side.cross(centre).normalized(), y = centre.cross(x);
-    double xx = 0, xy = 0, yy = 0;
-    for (const TexelPoint& p : points) {
-        const V2d d((p.at - moments.mean).dot(x), (p.at - moments.mean).dot(y));
-        xx += p.share * d.x * d.x;
-        xy += p.share * d.x * d.y;
-        yy += p.share * d.y * d.y;
-    }
-    // The covariance's Cholesky factor; a side's is a third of its half's square.
-    const double l = std::sqrt(3 * xx), m = l > 0 ? 3 * xy / l : 0;
-    moments.a = x * l + y * m;
-    moments.b = y * std::sqrt(std::max(0.0, 3 * yy - m * m));
-    return moments;
-}
+/// What of the kernel's mass lies within a pixel's extent of its horizon does not matter if less.
+constexpr double kNoKink = 1e-7;
 
-/// Marks the pixels that are near and sets the weights of the others, by a rule of four points that
-/// has the first and second moments of their displacements from the texel, of whose centre no part
-/// of it is farther than `radius`.
-void addFar(Block& block, const V3d& centre, const Moments& texel, double radius) {
+/// Marks the pixels that are near and sets the weights of the others, by points on the sphere: in
+/// its plane the rule's error would be that of the sphere's curvature. `horizon` are more points of
+/// the texel, for pixels that the kernel's kink at its horizon crosses.
+void addFar(Block& block, const Texel& texel, const std::vector<TexelPoint>& horizon) {
     const NearField& field = block.field;
     NearWeights& w = block.weights;
     block.near.assign(w.weight.size(), 0);
-    std::vector<V2d> azimuth;
-    for (int i = 0; i < w.columns; ++i) {
-        const double psi = 2 * kPi / field.width * (w.column + i + 0.5);
-        azimuth.emplace_back(std::cos(psi), std::sin(psi));
-    }
+    PixelGrid few(field, w, 2), many(field, w, 4);
     const double half_height = 0.5 * kPi / field.height;
     for (int j = 0; j < w.rows; ++j) {
         const double middle = 2 * half_height * (w.row + j + 0.5);
-        // Where a pixel's mean lies: its parallels are the longer the farther from the pole.
-        const double theta = middle + half_height * half_height / (3 * std::tan(middle));
-        const double sin = std::sin(theta), cos = std::cos(theta);
-        const double half_width = kPi / field.width * sin;
-        const double pixel = 2 * std::max(half_height, half_width);
-        const double far = field.rules.far * std::hypot(1.4 * radius, pixel);
-        const double reach = field.kernel.reach + radius + pixel;
+        const double sin = std::sin(middle), cos = std::cos(middle);
+        const double extent = std::max(2 * half_height, 2 * kPi / field.width * sin);
+        const double far = field.rules.far * std::hypot(1.4 * texel.radius, extent);
+        const double reach = field.kernel.reach + texel.radius + extent;
+        const double before = std::sin(std::max(0.0, 0.25 * kPi - 0.5 * extent));
+        const bool has_kink = field.kernel.massBeyond(before * before) > kNoKink;
         const double area = latlongPixelSolidAngle(field.width, field.height, w.row + j);
+        few.setRow(w.row + j);
+        if (has_kink) many.setRow(w.row + j);
         for (int i = 0; i < w.columns; ++i) {
             const std::size_t at = static_cast<std::size_t>(j * w.columns + i);
-            const V2d u = azimuth[static_cast<std::size_t>(i)];
-            const V3d pixel_centre(sin * u.x, sin * u.y, cos);
-            const double from_centre2 = (pixel_centre - centre).length2();
-            if (from_centre2 < far * far ||
-                (field.ring_room > 0 &&
-                 roomBesideRing(field, std::sqrt(from_centre2), radius + 0.5 * pixel) < far)) {
+            const V2d u = few.middleOf(i);
+            const double distance = (V3d(sin * u.x, sin * u.y, cos) - texel.centre).length();
+            if (distance < far ||
+                roomBesideRing(field, distance, texel.radius + 0.5 * extent) < far) {
                 block.near[at] = 1;
-                continue;
+            } else if (has_kink &&
+                       std::abs(distance - std::numbers::sqrt2) < texel.radius + extent) {
+                w.weight[at] = area * many.meanOf(field.value, i, horizon);
+            } else if (distance <= reach) {
+                w.weight[at] = area * few.meanOf(field.value, i, texel.four);
             }
-            if (from_centre2 > reach * reach) continue;
-            // Along the chord and across it, in the plane between both tangent planes.
-            const V3d between = pixel_centre - texel.mean;
-            const double chord = between.length();
-            const V3d along = between * (1 / chord);
-            const V3d across = pixel_centre.cross(centre).normalized();
-            const V3d south = V3d(cos * u.x, cos * u.y, -sin) * half_height;
-            const V3d east = V3d(-u.y, u.x, 0) * half_width;
-            double xx = 0, xy = 0, yy = 0;
-            for (const V3d& side : {south, east, texel.a, texel.b}) {
-                const double x = side.dot(along), y = side.dot(across);
-                xx += x * x / 3;
-                xy += x * y / 3;
-                yy += y * y / 3;
-            }
-            // Half sides leave the sphere: their ends lie deeper.
-            const double deeper = (south.length2() + east.length2()) / 6 * 0.5 * chord;
-            // The covariance's Cholesky factor.
-            const double l = std::sqrt(xx), m = xy / l, n = std::sqrt(std::max(0.0, yy - m * m));
-            double sum = 0;
-            for (const double s : {-1.0, 1.0})
-                for (const double t : {-1.0, 1.0})
-                    sum += field.value(V2d(chord - deeper + s * l, s * m + t * n).length2());
-            w.weight[at] = 0.25 * area * sum;
         }
     }
 }
@@ -328,23 +349,24 @@ NearWeights nearWeights(const NearField& field, const MapExtent& map, int x, int
         weights.area = field.kernel.mass;
         return weights;
     }
-    // A ring's mass lies far from the texel, wherever that is.
-    const bool compact = scale == 1 && field.ring_room == 0;
     setBlock(field, texel.outline, texel.centre, weights);
     Block block{field, weights, {}};
-    addFar(block, texel.centre, momentsOf(texel.four, texel.centre), texel.radius);
-    if (scale >= (field.ring_room > 0 ? kLeastOutlineOfRing : kLeastOutline)) {
-        addTexel(block, texel, compact ? Potential::withoutArea : Potential::withArea);
-    } else {
-        // Beside a sun pixels' masses need one point more than footprintOf's, which are for lobes.
-        addPoints(block, pointsOf(map, x, y, {scale, footprint.samples + (scale > 0 ? 1 : 0)}));
+    addFar(block, texel, pointsOf(map, x, y, {scale, scale > 0 ? 6 : 1}));
+    // A ring's mass lies far from the texel, wherever that is.
+    const bool leaves_area = scale == 1 && field.ring_room == 0;
+    const Flow flow(field, map, x, y, footprint, texel,
+                    leaves_area ? Potential::withoutArea : Potential::withArea);
+    for (const PixelEdge& f : edgesOfNear(block)) {
+        const double carried = flow.across(f.arc);
+        block.add(f.before, carried);
+        block.add(f.after, -carried);
     }
-    if (!compact) addEven(block, field.kernel.mass);
+    if (!leaves_area) addEven(block, field.kernel.mass);
     double sum = 0;
     for (const double w : weights.weight)
         sum += w;
     // Between what is near and what is far the sums are of two kinds.
-    if (compact) {
+    if (leaves_area) {
         weights.area = field.kernel.mass - sum;
     } else {
         for (double& w : weights.weight)
@@ -357,6 +379,7 @@ std::vector<double> peakMasses(const NearField& field, const MapExtent& map, int
                                const Footprint& of_map, std::span<const Peak> peaks) {
     const Footprint footprint = footprintOfTexel(of_map, map.layout, map.width, x, y);
     const Texel texel = texelOf(map, x, y, footprint.scale);
+    const Flow flow(field, map, x, y, footprint, texel, Potential::withArea);
     std::vector<double> masses;
     for (const Peak& peak : peaks) {
         const double area = latlongPixelSolidAngle(field.width, field.height, peak.row);
@@ -364,7 +387,7 @@ std::vector<double> peakMasses(const NearField& field, const MapExtent& map, int
         // Without an outline the texel is the whole sphere.
         if (!texel.outline.empty())
             for (const Arc& f : pixelOutline(field.width, field.height, peak.column, peak.row))
-                mass += flowAcross(field, Potential::withArea, texel, f);
+                mass += flow.across(f);
         masses.push_back(mass);
     }
     return masses;

@@ -60,8 +60,9 @@ double samplesOfFewTexels(double texel) {
 /// smooth ones need.
 Footprint footprintFor(double lobe_diameter, double texel, int degree, double extent,
                        double density) {
-    Footprint footprint{std::clamp(2 - lobe_diameter / extent, 0.0, 1.0), 1, texel, lobe_diameter,
-                        degree};
+    constexpr double kNone = 1e-6; // rounding, where a lobe is just two texels wide
+    Footprint footprint{std::min(2 - lobe_diameter / extent, 1.0), 1, texel, lobe_diameter, degree};
+    if (footprint.scale < kNone) footprint.scale = 0;
     if (footprint.scale > 0) {
         const double covered = footprint.scale * extent;
         const double for_lobe = density * samplesForLobe(covered / lobe_diameter);

@@ -134,5 +134,33 @@ TEST(NearWeights, PeaksInTexelsThatAHorizonCrosses) {
     }
 }
 
+/// Far from a texel pixels are taken at points, everywhere by their edges.
+TEST(NearWeights, FarPixelsAreAsByTheirEdges) {
+    const Lobe lobe{Kernel::ggx, 0.9};
+    const int width = 256, height = 128;
+    const NearField field = makeNearField(NearKernel(lobe, 0, 0), nearRules(0), width, height);
+    const MapExtent map{Layout::faces, 2, 12, texelAngle({lobe, Layout::faces, 2})};
+    const Footprint footprint = footprintOf(lobe, map.texel, kAnyDegree);
+    ASSERT_GT(footprint.scale, 0.05);
+    std::vector<Peak> peaks;
+    for (int j = 0; j < height; j += 3)
+        for (int i = j % 5; i < width; i += 5)
+            peaks.push_back({i, j, {1, 1, 1}});
+    const NearWeights weights = nearWeights(field, map, 0, 0, footprint);
+    ASSERT_EQ(weights.columns, width);
+    const std::vector<double> masses = peakMasses(field, map, 0, 0, footprint, peaks);
+    double off = 0, all = 0;
+    for (std::size_t p = 0; p < peaks.size(); ++p) {
+        const int row = peaks[p].row - weights.row;
+        const int column = ((peaks[p].column - weights.column) % width + width) % width;
+        const bool seen = row >= 0 && row < weights.rows;
+        const double weight =
+            seen ? weights.weight[static_cast<std::size_t>(row * width + column)] : 0;
+        off += std::abs(weight - masses[p]);
+        all += masses[p];
+    }
+    EXPECT_LT(off, 3e-5 * all);
+}
+
 } // namespace
 } // namespace ibl
