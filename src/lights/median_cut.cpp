@@ -13,10 +13,13 @@
 namespace ibl {
 namespace {
 
-/// The root mean square, over the region's energy, of the cosine of latitude: by it a step in
-/// longitude is shorter where the region's light is. The cosine of the middle latitude, as Debevec
-/// has it, gives errors a sixth larger at 64 lights (geometric mean over ten probes): of the tall
-/// regions beside a pole it sees neither how narrow they are at one end nor which end is lit.
+/// The cosine of latitude of the region's longest lit parallel, which is its extent in longitude:
+/// the mean over its energy by the eighth power, so that little light on a long parallel counts for
+/// little. Of the second power, the fourth, the eighth and the 32nd the eighth has the least errors
+/// from 4 to 512 lights (geometric means over ten probes, 5 % less than the second at 4 to 128
+/// lights; from 2048 on they differ by 3 %). The cosine of the middle latitude, as Debevec has it,
+/// gives errors a quarter larger at 64: of the tall regions beside a pole it sees neither how
+/// narrow they are at one end nor which end is lit.
 double litCosine(const SummedAreaTable& table, const PixelRegion& r) {
     constexpr int kStrips = 16;
     const int strips = std::min(kStrips, r.height);
@@ -26,10 +29,11 @@ double litCosine(const SummedAreaTable& table, const PixelRegion& r) {
         const double energy =
             static_cast<double>(table.energy({r.x, r.y + begin, r.width, end - begin}));
         const double sine = std::sin(kPi * (r.y + 0.5 * (begin + end)) / table.height());
-        sum += energy * sine * sine;
+        const double fourth = sine * sine * sine * sine;
+        sum += energy * fourth * fourth;
         total += energy;
     }
-    return std::sqrt(sum / total);
+    return std::pow(sum / total, 1.0 / 8);
 }
 
 /// Of a region with energy.

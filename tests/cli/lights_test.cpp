@@ -70,6 +70,11 @@ TEST(Lights, MatchedPlacesAreNearerTheProbe) {
     }
 }
 
+TEST(Lights, SixtyFourByDefaultAreWithinOnePerCent) {
+    const Scratch scratch;
+    EXPECT_LT(lightsOf({"builtin:sky"}, scratch)["irradiance_error"].get<double>(), 0.0075);
+}
+
 TEST(Lights, MaxErrorIsKeptOrRefused) {
     const Scratch scratch;
     const Json lights = lightsOf({"builtin:sky", "--max-error", "0.01"}, scratch);
