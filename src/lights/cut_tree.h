@@ -28,8 +28,8 @@ std::vector<int> leavesOf(const CutTree& tree, std::size_t cuts);
 /// Cuts until `count` regions have energy, or none with energy has more than one pixel. The sphere
 /// is opened at the meridian of least energy, so that no source is cut by the image's border. In
 /// each round every region with energy is cut, the heaviest first, across its longer side
-/// (longitude scaled by the cosine of latitude of the region's longest lit parallel) where the energy on both sides
-/// is most nearly equal. The last round ends when the count is reached.
+/// (longitude scaled by the cosine of latitude of the region's longest lit parallel) where the
+/// energy on both sides is most nearly equal. The last round ends when the count is reached.
 CutTree medianCut(const SummedAreaTable& table, int count, int threads);
 
 /// The same, but a cut is along either side, so that the larger variance of the two parts is least:
