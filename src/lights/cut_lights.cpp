@@ -25,7 +25,7 @@ constexpr std::array<MethodRow, 3> kMethods{{{LightMethod::median, "median"},
 /// None for a probe without light.
 std::vector<Light> lightsFor(const Image& latlong, const LightRequest& request, int threads) {
     if (request.method == LightMethod::importance) {
-        const SummedAreaTable table(latlong, threads);
+        const SummedAreaTable table(latlong, 0, threads);
         if (table.energy({0, 0, table.width(), table.height()}) <= 0) return {};
         return importanceLights(latlong, table, request.count, threads);
     }

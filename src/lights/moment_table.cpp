@@ -61,29 +61,22 @@ void addBlockRow(int width, double scale, const MomentTable::Sums* above,
     }
 }
 
-int blocksAcross(int pixels, int shift) {
-    return ((pixels - 1) >> shift) + 1;
-}
-
 } // namespace
 
 MomentTable::MomentTable(const Image& latlong, int shift, int threads)
-    : pixel_width_(latlong.width),
-      pixel_height_(latlong.height),
-      shift_(shift),
-      table_(blocksAcross(latlong.width, shift), blocksAcross(latlong.height, shift)) {
+    : blocks_{latlong.width, latlong.height, shift}, table_(blocks_.width(), blocks_.height()) {
     static_assert(sizeof(Sums) == 4 * sizeof(double));
-    const ColumnMoments columns = columnMoments(pixel_width_);
+    const ColumnMoments columns = columnMoments(latlong.width);
     std::vector<double> energies(static_cast<std::size_t>(height()));
     parallelForRuns(energies.size(), 32, threads, [&](std::size_t begin, std::size_t end) {
         for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
             double* blocks = reinterpret_cast<double*>(table_.place(y));
             std::fill_n(blocks, 4 * static_cast<std::size_t>(width()), 0.0);
-            for (int j = y << shift_; j < std::min(pixel_height_, (y + 1) << shift_); ++j) {
-                const RowMoments row = rowMoments(pixel_width_, pixel_height_, j);
+            for (int j = y << shift; j < std::min(latlong.height, (y + 1) << shift); ++j) {
+                const RowMoments row = rowMoments(latlong.width, latlong.height, j);
                 const double weights[4] = {row.solid_angle, row.horizontal, row.vertical,
                                            row.horizontal};
-                addPixelRow(latlong.row(j), columns, weights, shift_, blocks);
+                addPixelRow(latlong.row(j), columns, weights, shift, blocks);
             }
             for (int i = 0; i < width(); ++i)
                 energies[static_cast<std::size_t>(y)] += blocks[4 * i];
@@ -97,15 +90,6 @@ MomentTable::MomentTable(const Image& latlong, int shift, int threads)
         });
     });
     table_.addUpBands();
-}
-
-PixelRegion MomentTable::pixels(const PixelRegion& r) const {
-    const int end = r.x + r.width;
-    const int right = end <= width() ? std::min(pixel_width_, end << shift_)
-                                     : pixel_width_ + ((end - width()) << shift_);
-    const int x = r.x << shift_, y = r.y << shift_;
-    return {x, y, std::min(right - x, pixel_width_),
-            std::min(pixel_height_, (r.y + r.height) << shift_) - y};
 }
 
 double MomentTable::variance(const PixelRegion& region) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "image/image.h"
+#include "lights/pixel_blocks.h"
 #include "lights/prefix_table.h"
 
 #include <cstdint>
@@ -27,7 +28,7 @@ public:
     int height() const { return table_.height(); }
 
     /// A region of blocks as one of pixels.
-    PixelRegion pixels(const PixelRegion& blocks) const;
+    PixelRegion pixels(const PixelRegion& region) const { return blocks_.pixels(region); }
 
     std::int64_t energy(const PixelRegion& region) const { return table_.sum(region).parts[0]; }
 
@@ -36,9 +37,7 @@ public:
     double variance(const PixelRegion& region) const;
 
 private:
-    int pixel_width_;
-    int pixel_height_;
-    int shift_;
+    PixelBlocks blocks_;
     PrefixTable<Sums> table_;
 };
 

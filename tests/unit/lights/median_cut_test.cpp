@@ -41,9 +41,7 @@ void expectEnergyKept(const Image& image, int count) {
 
 TEST(SummedArea, RectanglesAreTheirPixelsSums) {
     const Image image = noise(37, 19, 1);
-    const SummedAreaTable table(image, 2);
-    for (const PixelRegion r : {PixelRegion{0, 0, 37, 19}, PixelRegion{5, 3, 7, 9},
-                                PixelRegion{30, 0, 20, 19}, PixelRegion{36, 18, 1, 1}}) {
+    const auto sumOver = [&](const PixelRegion& r) {
         double sum = 0;
         for (int j = r.y; j < r.y + r.height; ++j) {
             for (int i = r.x; i < r.x + r.width; ++i) {
@@ -52,15 +50,29 @@ TEST(SummedArea, RectanglesAreTheirPixelsSums) {
                        latlongPixelSolidAngle(37, 19, j);
             }
         }
-        EXPECT_NEAR(static_cast<double>(table.energy(r)) / table.unitsPerEnergy(), sum,
-                    1e-12 * sum);
-    }
+        return sum;
+    };
+    const auto expectSums = [&](const SummedAreaTable& table,
+                                std::initializer_list<PixelRegion> regions) {
+        for (const PixelRegion& r : regions) {
+            const double sum = sumOver(table.pixels(r));
+            EXPECT_NEAR(static_cast<double>(table.energy(r)) / table.unitsPerEnergy(), sum,
+                        1e-12 * sum);
+        }
+    };
+    expectSums(SummedAreaTable(image, 0, 2),
+               {PixelRegion{0, 0, 37, 19}, PixelRegion{5, 3, 7, 9}, PixelRegion{30, 0, 20, 19},
+                PixelRegion{36, 18, 1, 1}});
+    // Blocks of 2 x 2 pixels, of which the last column and row have one.
+    expectSums(SummedAreaTable(image, 1, 2),
+               {PixelRegion{0, 0, 19, 10}, PixelRegion{3, 2, 7, 5}, PixelRegion{15, 0, 10, 10},
+                PixelRegion{18, 9, 1, 1}});
 }
 
 TEST(SummedArea, DimRegionBesideASunIsNotLost) {
     Image image = filled(256, 128, 1e-3f);
     setPixel(image, 10, 5, 1e9f, 1e9f, 1e9f);
-    const SummedAreaTable table(image, 2);
+    const SummedAreaTable table(image, 0, 2);
     // Right of and below the sun, so that every table entry used contains it.
     const PixelRegion dim{200, 60, 3, 2};
     const double expected =
@@ -97,6 +109,20 @@ TEST(MedianCut, GivesTheCountAsked) {
     }
 }
 
+/// Large probes are cut in blocks of 2 x 2 pixels, unless these are too few.
+TEST(MedianCut, LargeProbesKeepEnergyAndCountAndAreCutWithinAPixel) {
+    Image image = filled(1536, 768, 1);
+    for (const Light& light : medianLights(image, 64)) {
+        // A pixel more or less along one side of a region of 192 x 96.
+        EXPECT_NEAR(light.solid_angle, 4 * kPi / 64, 4 * kPi / 64 / 16);
+    }
+    expectEnergyKept(image, 100);
+    std::ranges::fill(image.pixels, 0.0f);
+    for (int k = 0; k < 4; ++k)
+        setPixel(image, 700 + k % 2, 300 + k / 2, 1e9f, 1e9f, 1e9f);
+    EXPECT_EQ(medianLights(image, 4).size(), 4u); // all within one block
+}
+
 TEST(MedianCut, UniformProbeGivesRegionsOfEqualSolidAngle) {
     const Image image = filled(512, 256, 0.7f);
     for (const int count : {2, 4, 16, 64, 256, 1024}) {
@@ -113,14 +139,14 @@ TEST(MedianCut, UniformProbeGivesRegionsOfEqualSolidAngle) {
 }
 
 TEST(MedianCut, FewerCutsAreAPrefixOfMore) {
-    const SummedAreaTable table(noise(64, 32, 21), 2);
+    const SummedAreaTable table(noise(64, 32, 21), 0, 2);
     const CutTree few = medianCut(table, 37, 1), many = medianCut(table, 200, 2);
     ASSERT_LT(few.cut.size(), many.cut.size());
     EXPECT_TRUE(std::equal(few.cut.begin(), few.cut.end(), many.cut.begin()));
 }
 
 TEST(MedianCut, BetweenPowersOfTwoTheHeaviestAreCut) {
-    const SummedAreaTable table(noise(64, 32, 22), 2);
+    const SummedAreaTable table(noise(64, 32, 22), 0, 2);
     std::vector<std::int64_t> four, six;
     for (const PixelRegion& r : medianRegions(table, 4))
         four.push_back(table.energy(r));
@@ -134,7 +160,7 @@ TEST(MedianCut, BetweenPowersOfTwoTheHeaviestAreCut) {
 
 TEST(MedianCut, CutsAreAsEvenAsPixelsAllow) {
     const Image image = noise(256, 128, 4);
-    const SummedAreaTable table(image, 1);
+    const SummedAreaTable table(image, 0, 1);
     const auto regions = medianRegions(table, 16);
     const double share = static_cast<double>(table.energy({0, 0, 256, 128})) / 16;
     for (const PixelRegion& r : regions) {
@@ -152,7 +178,7 @@ TEST(MedianCut, TheLongerSideIsMeasuredWhereTheLightIs) {
             for (int x = 0; x < 256; ++x)
                 setPixel(image, x, y, 1.f, 1.f, 1.f);
         }
-        const auto regions = medianRegions(SummedAreaTable(image, 1), 2);
+        const auto regions = medianRegions(SummedAreaTable(image, 0, 1), 2);
         EXPECT_EQ(regions[0].height == 128, across) << row;
     }
 }
@@ -180,7 +206,7 @@ TEST(MedianCut, ASunAcrossTheSeamStaysWhole) {
     ASSERT_EQ(lights.size(), 1u);
     EXPECT_LT(lights[0].direction.z, -0.99);
     // And the circle is opened elsewhere than through the sun.
-    const auto regions = medianRegions(SummedAreaTable(image, 1), 1);
+    const auto regions = medianRegions(SummedAreaTable(image, 0, 1), 1);
     EXPECT_EQ(regions[0].x, 2);
 }
 

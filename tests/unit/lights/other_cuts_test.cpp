@@ -237,7 +237,7 @@ TEST(AllMethods, ASunOverAPoleIsOneDirection) {
 TEST(Importance, AnyPrefixOfTheSphereGetsItsShareOfLights) {
     const Image image = noise(64, 32, 45);
     const std::vector<Light> lights = lightsOfProbe(image, LightMethod::importance, 4096).lights;
-    const SummedAreaTable table(image, 1);
+    const SummedAreaTable table(image, 0, 1);
     const double total = static_cast<double>(table.energy({0, 0, 64, 32}));
     for (const PixelRegion r :
          {PixelRegion{0, 0, 32, 32}, PixelRegion{0, 0, 64, 9}, PixelRegion{10, 5, 30, 20}}) {
