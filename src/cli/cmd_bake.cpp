@@ -97,8 +97,8 @@ void runBake(const BakeOptions& options) {
                                          std::to_string(maxLevels(options.size)) +
                                          " levels; ask for fewer");
     }
-    const Panorama latlong{Layout::latlong,
-                           latlongOf(session.readProbe(options.probe), session.threads())};
+    const Panorama latlong =
+        toPrefilter(session.readProbe(options.probe), session.threads(), options.quality);
 
     // Irradiance holds nothing finer than a 64-texel face resolves.
     std::vector<PrefilterRequest> requests{

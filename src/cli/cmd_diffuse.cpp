@@ -89,8 +89,8 @@ void runDiffuse(const CLI::App& app, const DiffuseOptions& options) {
     WriteOptions how;
     if (has_map) how = writeOptions(options.output, options.common, options.to);
     how.smooth = true;
-    const Panorama latlong{Layout::latlong,
-                           latlongOf(session.readProbe(options.probe), session.threads())};
+    const Panorama latlong =
+        toPrefilter(session.readProbe(options.probe), session.threads(), options.quality);
     std::vector<PrefilterResult> results;
     if (has_map) {
         const bool is_latlong = options.to == Layout::latlong;

@@ -104,8 +104,8 @@ void runSpecular(const SpecularOptions& options) {
     WriteOptions how = writeOptions(options.output, options.common, options.to);
     const std::vector<PrefilterRequest> requests = requestsOf(options, how);
     how.smooth = options.levels || !isMirror(requests[0].lobe);
-    const Panorama latlong{Layout::latlong,
-                           latlongOf(session.readProbe(options.probe), session.threads())};
+    const Panorama latlong =
+        toPrefilter(session.readProbe(options.probe), session.threads(), options.quality);
     const auto results = runPrefilter(session, latlong, requests, options.quality);
     if (options.levels) reportRoughness(session, 0, *options.levels, options.roughness_map);
     session.stage("write", [&] {

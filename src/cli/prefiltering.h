@@ -22,6 +22,10 @@ struct QualityOptions {
 /// `--quality` and `--max-error`.
 void bindQuality(CLI::App& app, QualityOptions& options);
 
+/// The probe as the lat-long that is convolved: of other layouts with smaller pixels, up to 16
+/// times and as many as the quality asks for, so that reading them again leaves little.
+Panorama toPrefilter(Panorama&& probe, int threads, const QualityOptions& quality);
+
 /// Convolves the probe and puts each result's error, band limit, peaks and seconds into the report
 /// under `results`. Throws Error (accuracy) when an asked `--max-error` is not kept.
 std::vector<PrefilterResult> runPrefilter(Session& session, const Panorama& latlong,

@@ -242,11 +242,16 @@ void Session::finish() {
         std::fprintf(stderr, "ibltool: %s\n", line.c_str());
 }
 
-Image latlongOf(Panorama&& probe, int threads, Enlarging enlarging) {
-    if (probe.layout == Layout::latlong) return std::move(probe.image);
+int latlongHeight(const Panorama& probe) {
     const int size = *layoutSize(probe.layout, probe.image.width, probe.image.height);
-    const bool like_latlong = probe.layout == Layout::exrLatlong || isSquareMap(probe.layout);
-    const int height = like_latlong ? size : 2 * size;
+    const bool like_latlong = probe.layout == Layout::latlong ||
+                              probe.layout == Layout::exrLatlong || isSquareMap(probe.layout);
+    return like_latlong ? size : 2 * size;
+}
+
+Image latlongOf(Panorama&& probe, int threads, Enlarging enlarging, int finer) {
+    if (probe.layout == Layout::latlong) return std::move(probe.image);
+    const int height = finer * latlongHeight(probe);
     return resample(probe, Layout::latlong, height, threads, enlarging).image;
 }
 

@@ -1,6 +1,8 @@
 #include "cli/tool.h"
 
 #include "image/read.h"
+#include "panorama/conventions.h"
+#include "panorama/layouts.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -168,6 +170,48 @@ TEST(Diffuse, KeepsTheEnergyOfACoarseProbeInAnyLayout) {
                 << layout << " " << size;
         }
     }
+}
+
+/// And it is lit as by its own texels, not by those of a lat-long as coarse.
+TEST(Diffuse, OfFacesIsTheSumOverTheirTexels) {
+    const Scratch scratch;
+    constexpr int kEdge = 16, kRows = 6, kParts = 4;
+    ASSERT_EQ(runTool({"convert", "builtin:sky", "--to", "vstrip", "--size", "16", "-o", "p.exr",
+                       "--type", "float"},
+                      scratch.path())
+                  .exit_code,
+              0);
+    ASSERT_EQ(runTool({"diffuse", "p.exr", "--from", "vstrip", "--to", "latlong", "--size", "6",
+                       "-o", "d.exr"},
+                      scratch.path())
+                  .exit_code,
+              0);
+    const Image probe = readImage((scratch / "p.exr").string()).image;
+    const Image map = readImage((scratch / "d.exr").string()).image;
+    std::vector<double> sums(2 * kRows * kRows, 0.0);
+    for (int y = 0; y < probe.height; ++y) {
+        for (int x = 0; x < probe.width; ++x) {
+            for (int part = 0; part < kParts * kParts; ++part) {
+                const V3d d = *texelDirection(Layout::vstrip, kEdge, 6 * kEdge,
+                                              x + (part % kParts + 0.5) / kParts,
+                                              y + (part / kParts + 0.5) / kParts);
+                const double energy = probe.at(x, y)[0] * solidAngleDensity(Layout::vstrip, d) *
+                                      std::pow(2.0 / kEdge / kParts, 2) / kPi;
+                for (std::size_t t = 0; t < sums.size(); ++t) {
+                    const V3d n = latlongDirection((t % (2 * kRows) + 0.5) / (2 * kRows),
+                                                   (t / (2 * kRows) + 0.5) / kRows);
+                    sums[t] += energy * std::max(0.0, n.dot(d));
+                }
+            }
+        }
+    }
+    double error = 0, size = 0;
+    for (int t = 0; t < 2 * kRows * kRows; ++t) {
+        const double exact = sums[static_cast<std::size_t>(t)];
+        error += std::pow(map.at(t % (2 * kRows), t / (2 * kRows))[0] - exact, 2);
+        size += exact * exact;
+    }
+    EXPECT_LT(std::sqrt(error / size), 1e-4);
 }
 
 TEST(Specular, ChainHasTheLevelsAskedAndTheirLobes) {
