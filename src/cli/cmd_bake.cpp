@@ -89,6 +89,9 @@ std::string manifest(const BakeOptions& options, const nlohmann::ordered_json& m
 }
 
 void runBake(const BakeOptions& options) {
+    if (options.folder == "-") {
+        throw Error(ExitCode::usage, "-o -: what is baked is a folder; name one");
+    }
     Session session("bake", options.common);
     const int levels = options.levels.value_or(maxLevels(options.size));
     if (levels > maxLevels(options.size)) {

@@ -156,7 +156,8 @@ void writeLights(Session& session, const LightsOptions& options, LightFormat for
     }
     if (clamped > 0) {
         session.note(options.output, "negative colours of " + std::to_string(clamped) +
-                                         " lights written as 0: glTF has none");
+                                         (clamped == 1 ? " light" : " lights") +
+                                         " written as 0: glTF has none");
     }
     session.writeText(options.output, text);
 }

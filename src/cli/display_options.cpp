@@ -267,9 +267,10 @@ PictureDisplay::PictureDisplay(Session& session, const EglContext& context,
     if (!arguments.adapt_state.empty()) adapted_to_ = readAdaptation(arguments.adapt_state);
     DisplayOptions options = chainOf(arguments);
     if (options.tone_map == ToneMap::display) {
-        if (!arguments.view.config.empty()) session.addInput(arguments.view.config);
         options.transform =
             session.stage("ocio", [&] { return loadDisplayTransform(arguments.view); });
+        for (const std::string& file : options.transform->files)
+            session.addInput(file);
     }
     chain_.emplace(context, options, std::move(shader_folder));
 }

@@ -41,8 +41,10 @@ std::string extraMessage(const CLI::App& root) {
     const std::vector<std::string> words = root.remaining(true);
     const auto option = std::ranges::find_if(
         words, [](const std::string& word) { return word.size() > 1 && word.starts_with('-'); });
-    if (option != words.end()) return *option + ": there is no such option";
-    if (root.get_subcommands().empty()) return words.front() + ": there is no such command";
+    const bool has_command = !root.get_subcommands().empty();
+    if (option != words.end() && (has_command || option == words.begin()))
+        return *option + ": there is no such option";
+    if (!has_command) return words.front() + ": there is no such command";
     return words.front() + ": is one word too many";
 }
 

@@ -223,14 +223,16 @@ void writeChain(Session& session, const std::string& path, std::span<const Prefi
         options.label = labels[k];
         session.write(levelName(path, static_cast<int>(k)), levels[k].map, options);
     }
-    const std::string next = levelName(path, static_cast<int>(levels.size()));
-    if (mapExists(next)) session.note(next, "is left of a longer chain; remove it");
+    if (const auto left = fileOfMap(levelName(path, static_cast<int>(levels.size()))))
+        session.note(*left, "is left of a longer chain; remove it and what else is");
 }
 
-bool mapExists(const std::string& path) {
-    std::error_code ignored;
-    if (std::filesystem::exists(path, ignored)) return true;
-    return std::filesystem::exists(probeFileNames(path, Layout::faces)[0], ignored);
+std::optional<std::string> fileOfMap(const std::string& path) {
+    for (const std::string& name : {path, probeFileNames(path, Layout::faces)[0]}) {
+        std::error_code ignored;
+        if (std::filesystem::exists(name, ignored)) return name;
+    }
+    return std::nullopt;
 }
 
 std::string levelName(const std::string& path, int level) {

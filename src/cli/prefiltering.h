@@ -78,8 +78,8 @@ std::vector<MapLabel> chainLabels(Kernel kernel, RoughnessMap map,
 void writeChain(Session& session, const std::string& path, std::span<const PrefilterResult> levels,
                 std::span<const MapLabel> labels, WriteOptions options);
 
-/// Whether there is a file of that name, or a first face of six.
-bool mapExists(const std::string& path);
+/// The file of that name, or the first face of six, if there is one.
+std::optional<std::string> fileOfMap(const std::string& path);
 
 /// The name of level k of a chain: dir/p.exr gives dir/p_m0.exr.
 std::string levelName(const std::string& path, int level);

@@ -96,7 +96,7 @@ SpecularMaps readSpecular(Session& session, const std::string& path) {
     }
     SpecularMaps maps;
     int levels = 0;
-    for (int k = 0; levels > 0 ? k < levels : mapExists(levelName(path, k)); ++k) {
+    for (int k = 0; levels > 0 ? k < levels : fileOfMap(levelName(path, k)).has_value(); ++k) {
         const auto [level, label] = readMap(session, levelName(path, k));
         if (k == 0) levels = label.levels;
         checkLevel(levelName(path, k), label, k, levels);

@@ -107,7 +107,22 @@ TellProgress Session::progress(const char* name) const {
     };
 }
 
+namespace {
+
+bool isSameFile(const std::string& a, const std::string& b) {
+    std::error_code ignored;
+    return a != "-" && !a.empty() && std::filesystem::equivalent(a, b, ignored);
+}
+
+} // namespace
+
 void Session::addInput(const std::string& path) {
+    for (const auto& [option, output] :
+         {std::pair{"--report", common_.report}, {"--depfile", common_.depfile}}) {
+        if (!isSameFile(output, path)) continue;
+        throw Error(ExitCode::usage, std::string(option) + ": " + output +
+                                         " is read as well and would be lost; name another file");
+    }
     input_names_.push_back(path);
 }
 
@@ -117,8 +132,10 @@ ProbeFile Session::readUnscreened(const ProbeOptions& options) {
     how.layer = options.layer;
     how.threads = threads();
     ProbeFile file = stage("read", [&] { return ibl::readProbe(options.input, how); });
-    for (const std::string& name : file.files)
+    for (const std::string& name : file.files) {
         addInput(name);
+        probe_names_.push_back(name);
+    }
     for (const std::string& text : file.notes)
         note(options.input, text);
     return file;
@@ -199,6 +216,10 @@ void Session::write(const std::string& path, std::span<const Image* const> level
 }
 
 void Session::writeText(const std::string& path, std::string_view text) {
+    for (const std::string& probe : probe_names_) {
+        if (!isSameFile(path, probe)) continue;
+        throw Error(ExitCode::usage, path + ": is the probe and would be lost; name another file");
+    }
     outputs_.add(path).write(text);
     addOutput(path);
 }

@@ -109,6 +109,7 @@ private:
     CommonOptions common_;
     OutputSet outputs_;
     std::vector<std::string> input_names_;
+    std::vector<std::string> probe_names_; ///< among them
     std::vector<std::string> output_names_;
     std::vector<std::string> notes_;
     std::vector<std::pair<std::string, double>> stages_;

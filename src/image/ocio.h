@@ -32,6 +32,7 @@ struct ShaderLut {
 struct DisplayTransform {
     std::string glsl;
     std::vector<ShaderLut> luts;
+    std::vector<std::string> files; ///< that were read: the config's, and what its view uses
 };
 
 /// Throws Error: usage when the config has no such space, display or view (naming those it has), or

@@ -79,12 +79,15 @@ OCIO::ConstProcessorRcPtr viewOf(const OCIO::ConstConfigRcPtr& config, const Dis
     return config->getProcessor(transform);
 }
 
-OCIO::ConstProcessorRcPtr processorOf(const DisplayView& view) {
+/// "" where there is none.
+std::string configFile(const DisplayView& view) {
     const char* environment = std::getenv("OCIO");
-    if (!view.config.empty()) {
-        return viewOf(OCIO::Config::CreateFromFile(view.config.c_str()), view);
-    }
-    if (environment && *environment) return viewOf(OCIO::Config::CreateFromEnv(), view);
+    return !view.config.empty() || !environment ? view.config : environment;
+}
+
+OCIO::ConstProcessorRcPtr processorOf(const DisplayView& view) {
+    const std::string config = configFile(view);
+    if (!config.empty()) return viewOf(OCIO::Config::CreateFromFile(config.c_str()), view);
     if (!view.space.empty() || !view.display.empty() || !view.view.empty()) {
         throw Unknown("is not set, so there is no OpenColorIO config to look spaces, displays and "
                       "views up in; set it to a config's file, or give one with --ocio-config");
@@ -141,6 +144,11 @@ ibltoolOcioLoad(const ibl::DisplayView& view, ibl::DisplayTransform& transform,
         processor->getDefaultGPUProcessor()->extractGpuShaderInfo(shader);
         transform.glsl = shader->getShaderText();
         ibl::addTables(*shader, transform);
+        if (const std::string config = ibl::configFile(view); !config.empty())
+            transform.files.push_back(config);
+        const OCIO::ConstProcessorMetadataRcPtr read = processor->getProcessorMetadata();
+        for (int i = 0; i < read->getNumFiles(); ++i)
+            transform.files.emplace_back(read->getFile(i));
         return ibl::ExitCode::done;
     } catch (const ibl::Unknown& problem) {
         error = problem.what();

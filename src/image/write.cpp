@@ -26,6 +26,7 @@ std::string formatOf(const std::string& path, const WriteOptions& options) {
     if (format.empty() && std::filesystem::is_directory(path, ignored)) {
         throw Error(ExitCode::usage, path + ": is a folder; name a file in it");
     }
+    if (path.empty()) throw Error(ExitCode::usage, "-o: the name is empty; name a file");
     if (format.empty()) {
         throw Error(ExitCode::usage,
                     (path == "-" ? "standard output" : path) +

@@ -40,7 +40,8 @@ void addRow(Part& part, const float* p, int width, int channels, double delta) {
         }
         const double value = luminance(p[0], p[1], p[2]);
         if (channels == 4) {
-            const double alpha = p[3] > 0 ? std::min(p[3], 1.0F) : 0;
+            double alpha = p[3] > 0 ? std::min(p[3], 1.0F) : 0;
+            if (value == 0 && alpha < 1) alpha = 0; // a shadow on what is not in the picture
             if (alpha > 0) part.logs += alpha * std::log(delta + value / alpha);
             part.weight += alpha;
             continue;

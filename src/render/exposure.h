@@ -12,8 +12,9 @@ struct PictureCensus {
     std::size_t nan = 0, infinite = 0, negative = 0; ///< pixels with such a channel, in this order
     /// exp(mean(ln(delta + L))), L the luminance (0.2126, 0.7152, 0.0722), 0 where it is negative
     /// or no number, largest float where it is infinite (Reinhard et al. 2002, eq. 1, without the
-    /// misprint of the 1/N). With alpha the colours are straight and weigh by alpha; delta where
-    /// nothing is opaque.
+    /// misprint of the 1/N). With alpha the colours are premultiplied and count without it, weighed
+    /// by it; black that is not opaque, as shadows are on a ground without background, does not
+    /// count; delta where nothing does.
     double log_average = 0;
 };
 

@@ -260,7 +260,28 @@ TEST(Contract, UsageIsRefusedInTheUsersWords) {
         1, "--roughness: 'nan' is not a number from 0 to 1");
     expectRefused(runTool({"bend", "builtin:sky"}, scratch.path()), 1,
                   "bend: there is no such command");
+    expectRefused(runTool({"bend", "builtin:sky", "-o", "o.exr"}, scratch.path()), 1,
+                  "bend: there is no such command");
+    expectRefused(runTool({"convert", "builtin:sky", "-o", ""}, scratch.path()), 1,
+                  "-o: the name is empty");
+    expectRefused(runTool({"bake", "builtin:sky", "-o", "-"}, scratch.path()), 1,
+                  "-o -: what is baked is a folder");
     EXPECT_TRUE(scratch.names().empty());
+}
+
+TEST(Contract, TextDoesNotReplaceWhatIsRead) {
+    const Scratch scratch;
+    make(scratch, "in.exr");
+    const std::string old = readFile(scratch / "in.exr");
+    const auto refused = [&](Words words, const char* said) {
+        words.insert(words.begin(), {"lights", "in.exr"});
+        expectRefused(runTool(words, scratch.path()), 1, said);
+        EXPECT_EQ(readFile(scratch / "in.exr"), old);
+    };
+    refused({"-o", "l.json", "--report", "in.exr"}, "--report: in.exr is read as well");
+    refused({"-o", "l.json", "--depfile", "./in.exr"}, "--depfile: ./in.exr is read as well");
+    refused({"-o", "in.exr", "--format", "json"}, "in.exr: is the probe");
+    EXPECT_EQ(scratch.names(), (Words{"in.exr"}));
 }
 
 TEST(Contract, AFailedRunLeavesTheOldFile) {

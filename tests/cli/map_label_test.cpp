@@ -69,14 +69,14 @@ TEST(MapLabel, LevelsLeftOfALongerChainAreToldAndPassedOver) {
     const Scratch scratch;
     makeChain(scratch, "alone.exr", "4");
     EXPECT_EQ(makeChain(scratch, "s.exr", "6"), "");
-    EXPECT_NE(makeChain(scratch, "s.exr", "4").find("s_m4.exr: is left of a longer chain"),
+    EXPECT_NE(makeChain(scratch, "s.exr", "4").find("s_m4_px.exr: is left of a longer chain"),
               std::string::npos);
     EXPECT_EQ(underChain(scratch, "s.exr").pixels, underChain(scratch, "alone.exr").pixels);
 
     make(scratch, {"bake", "builtin:sky", "--size", "16", "--lights", "1", "-o", "b"});
     const std::string note = make(scratch, {"bake", "builtin:sky", "--size", "16", "--lights", "1",
                                             "--levels", "3", "-o", "b"});
-    EXPECT_NE(note.find("specular_m3.exr: is left of a longer chain"), std::string::npos);
+    EXPECT_NE(note.find("specular_m3_px.exr: is left of a longer chain"), std::string::npos);
     underChain(scratch, "b/specular.exr");
 }
 

@@ -310,5 +310,37 @@ TEST(Tonemap, RefusesWhatHasNoEffectOrNoSense) {
                   "missing.exr");
 }
 
+/// A makefile makes the picture anew when the config or a table that its view uses has changed.
+TEST(Tonemap, DepfileNamesTheConfigAndItsTables) {
+    const Scratch scratch;
+    writeFile(scratch / "c.ocio", "ocio_profile_version: 2\n"
+                                  "search_path: .\n"
+                                  "roles: {scene_linear: lin, default: lin}\n"
+                                  "displays:\n"
+                                  "  D:\n"
+                                  "    - !<View> {name: V, colorspace: out}\n"
+                                  "colorspaces:\n"
+                                  "  - !<ColorSpace>\n"
+                                  "    name: lin\n"
+                                  "  - !<ColorSpace>\n"
+                                  "    name: out\n"
+                                  "    from_scene_reference: !<FileTransform> {src: t.spi1d}\n");
+    writeFile(scratch / "t.spi1d",
+              "Version 1\nFrom 0 1\nLength 3\nComponents 1\n{\n0\n0.7\n1\n}\n");
+    for (const bool by_environment : {false, true}) {
+        Words words{"tonemap", "builtin:sky", "--tonemap", "display", "--depfile",
+                    "d",       "--report",    "r.json",    "-o",      "o.png"};
+        std::vector<std::string> environment;
+        if (by_environment)
+            environment.push_back("OCIO=" + (scratch / "c.ocio").string());
+        else
+            words.insert(words.end(), {"--ocio-config", "c.ocio"});
+        const ToolResult result = runTool(words, scratch.path(), {}, environment);
+        ASSERT_EQ(result.exit_code, 0) << result.err;
+        EXPECT_NE(readFile(scratch / "d").find("c.ocio"), std::string::npos);
+        EXPECT_NE(readFile(scratch / "d").find("t.spi1d"), std::string::npos);
+    }
+}
+
 } // namespace
 } // namespace ibl

@@ -50,6 +50,10 @@ TEST(Exposure, AlphaWeighs) {
     picture.at(0, 0)[3] = 0.5F;
     picture.at(1, 0)[3] = 0;
     EXPECT_NEAR(takePictureCensus(picture, 1e-6, 1).log_average, 4, 1e-4);
+    picture.at(1, 0)[3] = 0.5F; // a shadow on the ground of another picture
+    EXPECT_NEAR(takePictureCensus(picture, 1e-6, 1).log_average, 4, 1e-4);
+    picture.at(1, 0)[3] = 1; // black paint
+    EXPECT_LT(takePictureCensus(picture, 1e-6, 1).log_average, 1e-2);
 }
 
 TEST(Exposure, WhatIsMissingHalvesEachHalfLife) {
