@@ -23,11 +23,6 @@ constexpr NearRules kRules[] = {
     {12, 24, 8, 5e-4, 1e-4, 30, 1e-6},
 };
 
-/// Footprints shrunk below this of the texel's extent are taken at points.
-constexpr double kLeastOutline = 0.25;
-/// The same where the lobe is a ring along its horizon, which needs more points.
-constexpr double kLeastOutlineOfRing = 0.01;
-
 /// The outline of the texel shrunk to `scale`.
 std::vector<Arc> outlineOf(const MapExtent& map, int x, int y, double scale) {
     std::vector<Arc> outline;
@@ -91,15 +86,15 @@ Texel texelOf(const MapExtent& map, int x, int y, double scale) {
     return texel;
 }
 
-/// What pieces of pixels' outlines carry to a texel's footprint: by its outline, or where it is
-/// small beside the kernel by points, of whose sum less is lost in a division by its solid angle.
+/// What pieces of pixels' outlines carry to a texel's footprint: by its outline, or where that is
+/// small (leastOutline) by points.
 class Flow {
 public:
     Flow(const NearField& field, const MapExtent& map, int x, int y, const Footprint& footprint,
          const Texel& texel, Potential potential)
         : field_(field), texel_(texel), potential_(potential) {
         const double scale = footprint.scale;
-        if (scale >= (field.ring_room > 0 ? kLeastOutlineOfRing : kLeastOutline)) return;
+        if (scale >= leastOutline(field.kernel.lobe())) return;
         // Beside a sun pixels' masses need one point more than footprintOf's, which are for lobes.
         points_ = pointsOf(map, x, y, {scale, footprint.samples + (scale > 0 ? 1 : 0)});
     }

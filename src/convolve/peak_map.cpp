@@ -11,7 +11,10 @@ Image peakMap(const std::vector<Peak>& peaks, double scale, int width, int heigh
               int threads) {
     const V2i size = layoutExtent(request.layout, request.size);
     const MapExtent map{request.layout, size.x, size.y, texelAngle(request)};
-    const NearField field = makeNearField(NearKernel(request.lobe, 0, 0), rules, width, height);
+    NearRules by_outlines = rules;
+    by_outlines.nodes = 2; // what touches in a plane is not met here
+    const NearField field =
+        makeNearField(NearKernel(request.lobe, 0, 0), by_outlines, width, height);
     Panorama result{request.layout, Image(size.x, size.y)};
     const std::size_t texels = static_cast<std::size_t>(size.x) * size.y;
     parallelFor(texels, threads, [&](std::size_t at) {

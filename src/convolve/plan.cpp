@@ -32,7 +32,7 @@ struct Costs {
     static constexpr double kGrid = 300;         ///< a squared degree: transforms of the synthesis
     static constexpr double kPeak = 40;          ///< a peak and a point, by Gauss points
     static constexpr double kPeakEdges = 800;    ///< the same by edges, where lobes are narrow
-    static constexpr double kPeakOutlines = 3e4; ///< a peak and a texel (peak_map.h)
+    static constexpr double kPeakOutlines = 1e5; ///< a peak and a texel (peak_map.h)
 };
 
 /// Outweighs any cost: a lobe whose error cannot be kept within kMostDegree.
@@ -64,8 +64,9 @@ double costOf(const std::vector<int>& degrees, std::span<const PrefilterRequest>
         const bool smooth = 2 * pixel < lobeWidth(requests[i].lobe);
         const double at_points =
             (smooth ? Costs::kPeak : Costs::kPeakEdges) * footprint.samples * footprint.samples;
-        cost += (isCrossedByHorizons(footprint) ? Costs::kPeakOutlines : at_points) * peaks *
-                texelCount(requests[i]);
+        cost +=
+            (isCrossedByHorizons(requests[i].lobe, footprint) ? Costs::kPeakOutlines : at_points) *
+            peaks * texelCount(requests[i]);
         most = std::max(most, degrees[i]);
     }
     return cost + Costs::kLegendre * cube(most);

@@ -243,7 +243,7 @@ PrefilterResult byHarmonics(const Engine& engine, const PrefilterRequest& reques
     const int degree = std::min(lobe.degree, leastDegree(lobe.k, lobe.degree, allowed, beyond));
     const double texel = texelAngle(request);
     const Footprint of_peaks = footprintOf(request.lobe, texel, kAnyDegree);
-    const bool apart = isCrossedByHorizons(of_peaks);
+    const bool apart = isCrossedByHorizons(request.lobe, of_peaks);
     const Footprint footprint = engine.peaks.empty() || apart
                                     ? footprintOf(request.lobe, texel, degree)
                                     : of_peaks; // they have no highest degree
@@ -265,7 +265,8 @@ PrefilterResult byHarmonics(const Engine& engine, const PrefilterRequest& reques
     std::optional<PeakSum> peaks;
     double outlines_error = 0;
     if (apart && !engine.peaks.empty()) {
-        const NearRules& rules = nearRules(max_error);
+        // A lone peak in a large texel needs more than what the others leave of many pixels' mean.
+        const NearRules& rules = nearRules(0);
         peak_map = peakMap(engine.peaks, engine.probe.scale, probe.width, probe.height, request,
                            of_peaks, rules, threads);
         outlines_error = rules.error;

@@ -188,10 +188,16 @@ Footprint footprintOf(const Lobe& lobe, double texel, int degree) {
     return footprintFor(2 * lobeWidth(lobe), texel, degree, texel, 1);
 }
 
-bool isCrossedByHorizons(const Footprint& of_map) {
+double leastOutline(const Lobe& lobe) {
+    return lobe.kernel == Kernel::charlie ? 0.01 : 0.25;
+}
+
+bool isCrossedByHorizons(const Lobe& lobe, const Footprint& of_map) {
+    constexpr double kFewer = 1.5; // so many times fewer points leave little
     const double diameters = of_map.scale * of_map.texel / of_map.lobe_diameter;
-    return of_map.scale > 0 &&
-           samplesOfFewTexels(of_map.texel) > std::max(kMostOfPeaks, samplesForLobe(diameters));
+    return of_map.scale >= leastOutline(lobe) &&
+           samplesOfFewTexels(of_map.texel) >
+               std::max(kFewer * kMostOfPeaks, samplesForLobe(diameters));
 }
 
 Footprint footprintOfTexel(const Footprint& of_map, Layout layout, int size, int x, int y) {

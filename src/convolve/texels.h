@@ -34,7 +34,11 @@ Footprint footprintOf(const Lobe& lobe, double texel, int degree);
 
 /// Whether texels are so large, beside the lobe's width too, that a horizon crossing them asks for
 /// more points than are worth evaluating peaks at.
-bool isCrossedByHorizons(const Footprint& of_map);
+bool isCrossedByHorizons(const Lobe& lobe, const Footprint& of_map);
+
+/// Footprints shrunk below this of the texel's extent are taken at points, not by their outlines:
+/// of an outline's sums less would be left. Charlie's ring along the horizon needs more points.
+double leastOutline(const Lobe& lobe);
 
 /// Relative RMSE that a footprint's points leave, as measured for all layouts, 1 to 47 texels and
 /// lobes with horizons and without; of a texel ten times as much.
