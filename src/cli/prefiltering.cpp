@@ -65,8 +65,7 @@ double errorOf(const QualityOptions& quality) {
 /// How many times finer than the probe its lat-long is. Pixels of other layouts have their edges
 /// across a lat-long's: as many of these as the probe has leave an error of 7e-4 to 4e-3 in diffuse
 /// maps of faces of 16 texels, 6e-5 to 3e-4 of 64 and 2e-5 to 9e-5 of 128 (pisa, studio, sunset),
-/// this many 1e-5 to 5e-5 and below 1e-5. Square maps are read at
-/// the price of a polygon a pixel.
+/// this many 1e-5 to 5e-5 and about 1e-5. Square maps are read at the price of a polygon a pixel.
 int readingFactor(const Panorama& probe, double error) {
     int most = error < 1e-4 ? 2048 : error < 1e-3 ? 1024 : 256;
     if (isSquareMap(probe.layout)) most = std::min(most, 256);
@@ -102,6 +101,7 @@ void bindQuality(CLI::App& app, QualityOptions& options) {
 }
 
 Panorama toPrefilter(Panorama&& probe, int threads, const QualityOptions& quality) {
+    if (probe.layout == Layout::latlong) return std::move(probe);
     const int finer = readingFactor(probe, errorOf(quality));
     return {Layout::latlong, latlongOf(std::move(probe), threads, Enlarging::hold, finer)};
 }

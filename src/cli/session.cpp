@@ -265,8 +265,7 @@ void Session::finish() {
 
 int latlongHeight(const Panorama& probe) {
     const int size = *layoutSize(probe.layout, probe.image.width, probe.image.height);
-    const bool like_latlong = probe.layout == Layout::latlong ||
-                              probe.layout == Layout::exrLatlong || isSquareMap(probe.layout);
+    const bool like_latlong = probe.layout == Layout::exrLatlong || isSquareMap(probe.layout);
     return like_latlong ? size : 2 * size;
 }
 

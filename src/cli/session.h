@@ -122,7 +122,7 @@ private:
 Image latlongOf(Panorama&& probe, int threads, Enlarging enlarging = Enlarging::hold,
                 int finer = 1);
 
-/// That height.
+/// That height, of a probe that is no lat-long.
 int latlongHeight(const Panorama& probe);
 
 } // namespace ibl

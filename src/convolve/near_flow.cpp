@@ -135,6 +135,15 @@ bool isFlat(const NearField& field, const Arc& arc, double length) {
     return length <= field.rules.flat && arc.sagitta() <= field.rules.bend * length;
 }
 
+/// How long pieces may be, by the rules, whose middles are `between` apart and that reach `half`
+/// from there together. Phi is a logarithm from 0 on, Psi is smooth over the kernel's width.
+double roomBetween(const NearField& field, Potential potential, double between, double half) {
+    const double distance = between - half;
+    if (potential == Potential::withoutArea) return distance;
+    return std::min(std::max(distance, 0.0) + 0.5 * field.kernel.width,
+                    roomBesideRing(field, between, half));
+}
+
 /// int_e int_f Phi dx . dy, or of Psi.
 double contourSum(const NearField& field, Potential potential, const Arc& e, const Arc& f) {
     const double e_length = e.length(), f_length = f.length();
@@ -145,10 +154,7 @@ double contourSum(const NearField& field, Potential potential, const Arc& e, con
     const bool compact = potential == Potential::withoutArea;
     if (compact && distance > field.kernel.reach) return 0;
     const RadialTable& table = compact ? field.phi : field.psi;
-    // Phi is a logarithm from 0 on, Psi is smooth over the kernel's width.
-    const double room = compact ? distance
-                                : std::min(std::max(distance, 0.0) + 0.5 * field.kernel.width,
-                                           roomBesideRing(field, between, half));
+    const double room = roomBetween(field, potential, between, half);
     if (room > field.rules.two * size) return pairSum(table, twoPoints(e), twoPoints(f));
     if (room > field.rules.three * size) return pairSum(table, threePoints(e), threePoints(f));
     bool split_e = e_length >= f_length;
@@ -175,9 +181,7 @@ double flowAcross(const NearField& field, Potential potential, const Texel& texe
     const double distance = between - half;
     if (length == 0 || (compact && distance > field.kernel.reach)) return 0;
     const RadialTable& swirl = compact ? field.outer_swirl : field.swirl;
-    const double room = compact ? distance
-                                : std::min(std::max(distance, 0.0) + 0.5 * field.kernel.width,
-                                           roomBesideRing(field, between, half));
+    const double room = roomBetween(field, potential, between, half);
     if (room > field.rules.two * size) return turnSum(swirl, texel.four, twoPoints(f));
     if (room > field.rules.three * size) return turnSum(swirl, texel.nine, threePoints(f));
     double sum = 0;

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 namespace ibl {
 namespace {
@@ -176,7 +177,6 @@ public:
             const double middle = 2 * kPi / field.width * (weights.column + i + 0.5);
             middles_.emplace_back(std::cos(middle), std::sin(middle));
         }
-        setRow(weights.row);
     }
 
     /// Cosine and sine of the middle of a column.
@@ -227,37 +227,43 @@ private:
 constexpr double kNoKink = 1e-7;
 
 /// Marks the pixels that are near and sets the weights of the others, by points on the sphere: in
-/// its plane the rule's error would be that of the sphere's curvature. `horizon` are more points of
+/// a plane the rule's error would be that of the sphere's curvature. `many` gives more points of
 /// the texel, for pixels that the kernel's kink at its horizon crosses.
-void addFar(Block& block, const Texel& texel, const std::vector<TexelPoint>& horizon) {
+template <class Many>
+void addFar(Block& block, const Texel& texel, const Many& many) {
     const NearField& field = block.field;
     NearWeights& w = block.weights;
     block.near.assign(w.weight.size(), 0);
-    PixelGrid few(field, w, 2), many(field, w, 4);
+    PixelGrid grid(field, w, 2);
     const double half_height = 0.5 * kPi / field.height;
+    const double longest = std::max(kPi / field.height, 2 * kPi / field.width);
+    const double before = std::sin(std::max(0.0, 0.25 * kPi - 0.5 * longest));
+    std::optional<PixelGrid> fine;
+    std::vector<TexelPoint> horizon;
+    if (field.kernel.massBeyond(before * before) > kNoKink) {
+        fine.emplace(field, w, 4);
+        horizon = many();
+    }
     for (int j = 0; j < w.rows; ++j) {
         const double middle = 2 * half_height * (w.row + j + 0.5);
         const double sin = std::sin(middle), cos = std::cos(middle);
         const double extent = std::max(2 * half_height, 2 * kPi / field.width * sin);
         const double far = field.rules.far * std::hypot(1.4 * texel.radius, extent);
         const double reach = field.kernel.reach + texel.radius + extent;
-        const double before = std::sin(std::max(0.0, 0.25 * kPi - 0.5 * extent));
-        const bool has_kink = field.kernel.massBeyond(before * before) > kNoKink;
         const double area = latlongPixelSolidAngle(field.width, field.height, w.row + j);
-        few.setRow(w.row + j);
-        if (has_kink) many.setRow(w.row + j);
+        grid.setRow(w.row + j);
+        if (fine) fine->setRow(w.row + j);
         for (int i = 0; i < w.columns; ++i) {
             const std::size_t at = static_cast<std::size_t>(j * w.columns + i);
-            const V2d u = few.middleOf(i);
+            const V2d u = grid.middleOf(i);
             const double distance = (V3d(sin * u.x, sin * u.y, cos) - texel.centre).length();
             if (distance < far ||
                 roomBesideRing(field, distance, texel.radius + 0.5 * extent) < far) {
                 block.near[at] = 1;
-            } else if (has_kink &&
-                       std::abs(distance - std::numbers::sqrt2) < texel.radius + extent) {
-                w.weight[at] = area * many.meanOf(field.value, i, horizon);
+            } else if (fine && std::abs(distance - std::numbers::sqrt2) < texel.radius + extent) {
+                w.weight[at] = area * fine->meanOf(field.value, i, horizon);
             } else if (distance <= reach) {
-                w.weight[at] = area * few.meanOf(field.value, i, texel.four);
+                w.weight[at] = area * grid.meanOf(field.value, i, texel.four);
             }
         }
     }
@@ -346,7 +352,7 @@ NearWeights nearWeights(const NearField& field, const MapExtent& map, int x, int
     }
     setBlock(field, texel.outline, texel.centre, weights);
     Block block{field, weights, {}};
-    addFar(block, texel, pointsOf(map, x, y, {scale, scale > 0 ? 6 : 1}));
+    addFar(block, texel, [&] { return pointsOf(map, x, y, {scale, scale > 0 ? 6 : 1}); });
     // A ring's mass lies far from the texel, wherever that is.
     const bool leaves_area = scale == 1 && field.ring_room == 0;
     const Flow flow(field, map, x, y, footprint, texel,

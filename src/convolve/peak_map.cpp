@@ -1,25 +1,25 @@
 #include "convolve/peak_map.h"
 
+#include "convolve/near_weights.h"
 #include "core/parallel.h"
 #include "panorama/layouts.h"
-#include "panorama/resample.h"
+
+#include <algorithm>
 
 namespace ibl {
 
 Image peakMap(const std::vector<Peak>& peaks, double scale, int width, int height,
-              const PrefilterRequest& request, const Footprint& footprint, const NearRules& rules,
-              int threads) {
+              const PrefilterRequest& request, const Footprint& footprint, int threads) {
     const V2i size = layoutExtent(request.layout, request.size);
     const MapExtent map{request.layout, size.x, size.y, texelAngle(request)};
-    NearRules by_outlines = rules;
-    by_outlines.nodes = 2; // what touches in a plane is not met here
-    const NearField field =
-        makeNearField(NearKernel(request.lobe, 0, 0), by_outlines, width, height);
-    Panorama result{request.layout, Image(size.x, size.y)};
+    NearRules rules = nearRules(kPeakMapError);
+    rules.nodes = 2; // what touches in a plane is not met here
+    const NearField field = makeNearField(NearKernel(request.lobe, 0, 0), rules, width, height);
+    Image result(size.x, size.y);
     const std::size_t texels = static_cast<std::size_t>(size.x) * size.y;
     parallelFor(texels, threads, [&](std::size_t at) {
         const int x = static_cast<int>(at) % size.x, y = static_cast<int>(at) / size.x;
-        float* texel = result.image.at(x, y);
+        float* texel = result.at(x, y);
         std::fill_n(texel, 3, 0.0f);
         if (!texelDirection(map.layout, map.width, map.height, x + 0.5, y + 0.5)) return;
         const std::vector<double> masses = peakMasses(field, map, x, y, footprint, peaks);
@@ -30,7 +30,7 @@ Image peakMap(const std::vector<Peak>& peaks, double scale, int width, int heigh
             texel[c] = static_cast<float>(sum / scale);
         }
     });
-    return std::move(result.image);
+    return result;
 }
 
 } // namespace ibl

@@ -6,7 +6,6 @@
 // texel and pixel (near_weights.h) it is 1e-7 in the time of 600 evaluations.
 #pragma once
 
-#include "convolve/near_weights.h"
 #include "convolve/peaks.h"
 #include "convolve/prefilter.h"
 #include "convolve/texels.h"
@@ -16,10 +15,12 @@
 namespace ibl {
 
 /// For maps of which isCrossedByHorizons: the mean over each texel's footprint of what the lobe
-/// gathers of the peaks' excess, divided by `scale`, with what `rules` leave. The probe is `width`
-/// x `height`.
+/// gathers of the peaks' excess, divided by `scale`. The probe is `width` x `height`.
 Image peakMap(const std::vector<Peak>& peaks, double scale, int width, int height,
-              const PrefilterRequest& request, const Footprint& footprint, const NearRules& rules,
-              int threads);
+              const PrefilterRequest& request, const Footprint& footprint, int threads);
+
+/// Relative RMSE that it leaves: that of the most exact rules. A lone peak in a large texel needs
+/// them; what others leave of a mean of many pixels is 1e-4 of it.
+inline constexpr double kPeakMapError = 1e-6;
 
 } // namespace ibl

@@ -4,6 +4,7 @@
 #include "convolve/direct.h"
 #include "convolve/error_bound.h"
 #include "convolve/evaluate.h"
+#include "convolve/fill_map.h"
 #include "convolve/near_map.h"
 #include "convolve/peak_map.h"
 #include "convolve/plan.h"
@@ -56,75 +57,12 @@ void checkRequests(const Image& probe, std::span<const PrefilterRequest> request
     }
 }
 
-/// What an output's rows are made from; absent parts are null.
-struct Ingredients {
-    const SmoothField* field = nullptr;
-    const MapValues* at_points = nullptr; ///< in place of `field`
-    const PeakSum* peaks = nullptr;
-    const DirectSum* direct = nullptr;
-    const Image* map = nullptr; ///< added to all that
-};
-
 struct Probe {
     const Panorama& panorama;
     const Image& image; ///< its
     double scale;
     bool negative;
 };
-
-/// Fills row y of the map.
-void fillRow(const Probe& probe, const PrefilterRequest& request, const Footprint& footprint,
-             const Ingredients& parts, int y, Image& map, MapNorm& norm) {
-    const RowPoints points = rowPoints(request.layout, map.width, map.height, y, footprint);
-    const std::size_t count = points.u.size();
-    std::vector<double> values(3 * count, 0.0);
-    if (parts.field) {
-        std::vector<float> smooth(3 * count);
-        sampleField(*parts.field, points.u.data(), points.v.data(), static_cast<int>(count),
-                    smooth.data());
-        std::ranges::copy(smooth, values.begin());
-    }
-    if (parts.at_points) {
-        const double* row = parts.at_points->values.data() + 3 * parts.at_points->first[y];
-        std::copy_n(row, 3 * count, values.begin());
-    }
-    if (parts.peaks) {
-        addPeaks(*parts.peaks, points.u, points.v, values.data());
-    }
-    for (std::size_t i = 0; parts.direct && i < count; ++i) {
-        addDirect(*parts.direct, makeAxis(points.u[i], points.v[i]), &values[3 * i]);
-    }
-    float* out = map.row(y);
-    std::fill(out, out + map.rowFloats(), 0.0f);
-    for (std::size_t t = 0; t < points.column.size(); ++t) {
-        float* texel = out + std::size_t{3} * points.column[t];
-        for (int c = 0; c < 3; ++c) {
-            double value = 0;
-            for (std::size_t i = points.first[t]; i < points.first[t + 1]; ++i)
-                value += points.share[i] * values[3 * i + c];
-            value /= probe.scale;
-            if (parts.map) value += parts.map->at(points.column[t], y)[c];
-            // Rounding and the truncated tails may leave a little below zero beside a sun; a mean
-            // of non-negative radiance is not.
-            if (!probe.negative) value = std::max(0.0, value);
-            texel[c] = static_cast<float>(value);
-            norm.add(points.solid_angle[t], value);
-        }
-    }
-}
-
-void fillMap(const Probe& probe, const PrefilterRequest& request, const Footprint& footprint,
-             const Ingredients& parts, int threads, Panorama& map, MapNorm& norm,
-             Progress* progress = nullptr) {
-    std::vector<MapNorm> rows(map.image.height);
-    parallelFor(rows.size(), threads, [&](std::size_t y) {
-        fillRow(probe, request, footprint, parts, static_cast<int>(y), map.image, rows[y]);
-        if (progress) progress->step();
-    });
-    for (const MapNorm& row : rows)
-        norm.add(row);
-    mergeBorder(map);
-}
 
 /// All that the requests share.
 struct Engine {
@@ -223,10 +161,10 @@ PrefilterResult directSum(const Engine& engine, const PrefilterRequest& request,
         result.error_bound = result.error_estimate = rules.error;
     } else {
         const DirectSum direct = makeDirectSum(request.lobe, probe, engine.probe.scale);
-        Ingredients parts;
+        Ingredients parts{engine.probe.scale, engine.probe.negative};
         parts.direct = &direct;
         MapNorm norm;
-        fillMap(engine.probe, request, footprint, parts, threads, result.map, norm, &progress);
+        fillMap(request, footprint, parts, threads, result.map, norm, &progress);
         result.error_bound = result.error_estimate = kFloatRounding;
         result.worst_bound = kFloatRounding;
     }
@@ -247,7 +185,7 @@ PrefilterResult byHarmonics(const Engine& engine, const PrefilterRequest& reques
     const Footprint footprint = engine.peaks.empty() || apart
                                     ? footprintOf(request.lobe, texel, degree)
                                     : of_peaks; // they have no highest degree
-    Ingredients parts;
+    Ingredients parts{engine.probe.scale, engine.probe.negative};
     SmoothField field;
     MapValues at_points;
     const Image& map = result.map.image;
@@ -265,18 +203,16 @@ PrefilterResult byHarmonics(const Engine& engine, const PrefilterRequest& reques
     std::optional<PeakSum> peaks;
     double outlines_error = 0;
     if (apart && !engine.peaks.empty()) {
-        // A lone peak in a large texel needs more than what the others leave of many pixels' mean.
-        const NearRules& rules = nearRules(0);
         peak_map = peakMap(engine.peaks, engine.probe.scale, probe.width, probe.height, request,
-                           of_peaks, rules, threads);
-        outlines_error = rules.error;
+                           of_peaks, threads);
+        outlines_error = kPeakMapError;
         parts.map = &peak_map;
     } else {
         peaks = makePeakSum(engine.peaks, probe.width, probe.height, request.lobe);
         parts.peaks = &*peaks;
     }
     MapNorm norm;
-    fillMap(engine.probe, request, footprint, parts, threads, result.map, norm);
+    fillMap(request, footprint, parts, threads, result.map, norm);
     result.band_limit = degree;
     result.peaks_split = static_cast<int>(engine.peaks.size());
     const SpectrumError error = spectrumError(lobe.k, engine.power, engine.clamped_energy, degree);
@@ -299,7 +235,7 @@ PrefilterResult inTwoParts(const Engine& engine, const PrefilterRequest& request
     const Image& probe = engine.probe.image;
     const double texel = texelAngle(request);
     const LobeSplit split = splitLobe(request.lobe, lobe.k, lobe.degree, lobe.allowed);
-    Ingredients parts;
+    Ingredients parts{engine.probe.scale, engine.probe.negative};
     SmoothField field;
     if (split.degree > 0) {
         field = synthesise(*engine.whole, split.k, split.degree, threads);
@@ -312,8 +248,8 @@ PrefilterResult inTwoParts(const Engine& engine, const PrefilterRequest& request
     const Image near = nearMap(engine.probe.panorama, near_field, request, near_footprint, threads);
     parts.map = &near;
     MapNorm norm;
-    fillMap(engine.probe, request, footprintOf(request.lobe, texel, split.degree), parts, threads,
-            result.map, norm);
+    fillMap(request, footprintOf(request.lobe, texel, split.degree), parts, threads, result.map,
+            norm);
     result.band_limit = split.degree;
     if (split.degree > 0) {
         const SpectrumError error =
