@@ -88,6 +88,12 @@ std::string manifest(const BakeOptions& options, const nlohmann::ordered_json& m
     return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
+/// From the pixels that `lights` cuts.
+LightSet cutLightsOf(const ProbeToPrefilter& probe, const LightRequest& request, int threads) {
+    if (!probe.source) return cutLights(probe.latlong.image, request, threads);
+    return cutLights(latlongOf(Panorama(*probe.source), threads), request, threads);
+}
+
 void runBake(const BakeOptions& options) {
     if (options.folder == "-") {
         throw Error(ExitCode::usage, "-o -: what is baked is a folder; name one");
@@ -100,9 +106,6 @@ void runBake(const BakeOptions& options) {
                                          std::to_string(maxLevels(options.size)) +
                                          " levels; ask for fewer");
     }
-    const Panorama latlong =
-        toPrefilter(session.readProbe(options.probe), session.threads(), options.quality);
-
     // Irradiance holds nothing finer than a 64-texel face resolves.
     std::vector<PrefilterRequest> requests{
         {{Kernel::lambert, 0}, Layout::faces, std::min(options.size, 64)}};
@@ -110,15 +113,17 @@ void runBake(const BakeOptions& options) {
          chainRequests(Kernel::ggx, levels, options.roughness_map, Layout::faces, options.size)) {
         requests.push_back(level);
     }
-    const auto results = runPrefilter(session, latlong, requests, options.quality);
+    const ProbeToPrefilter probe =
+        toPrefilter(session, session.readProbe(options.probe), requests, options.quality);
+    const auto results = runPrefilter(session, probe, requests, options.quality);
     LightRequest cuts;
     cuts.count = options.lights;
     LightSet lights =
-        session.stage("cut", [&] { return cutLights(latlong.image, cuts, session.threads()); });
+        session.stage("cut", [&] { return cutLightsOf(probe, cuts, session.threads()); });
     lights.source = options.probe.input;
 
-    const ShCoefficients sh =
-        session.stage("project", [&] { return projectProbe(latlong.image, 3, session.threads()); });
+    const ShCoefficients sh = session.stage(
+        "project", [&] { return projectProbe(probe.latlong.image, 3, session.threads()); });
 
     BakeFolder folder(options.folder);
     WriteOptions how;

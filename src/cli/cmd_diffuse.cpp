@@ -89,19 +89,17 @@ void runDiffuse(const CLI::App& app, const DiffuseOptions& options) {
     WriteOptions how;
     if (has_map) how = writeOptions(options.output, options.common, options.to);
     how.smooth = true;
-    const Panorama latlong =
-        toPrefilter(session.readProbe(options.probe), session.threads(), options.quality);
+    const bool is_latlong = options.to == Layout::latlong;
+    const PrefilterRequest request{
+        {Kernel::lambert, 0}, options.to, options.size.value_or(is_latlong ? 128 : 64)};
+    const ProbeToPrefilter probe =
+        toPrefilter(session, session.readProbe(options.probe), {&request, 1}, options.quality);
     std::vector<PrefilterResult> results;
-    if (has_map) {
-        const bool is_latlong = options.to == Layout::latlong;
-        const PrefilterRequest request{
-            {Kernel::lambert, 0}, options.to, options.size.value_or(is_latlong ? 128 : 64)};
-        results = runPrefilter(session, latlong, {&request, 1}, options.quality);
-    }
+    if (has_map) results = runPrefilter(session, probe, {&request, 1}, options.quality);
     const std::string sh =
         options.sh.file.empty()
             ? ""
-            : coefficientsText(session, latlong.image, options.sh, options.probe.input);
+            : coefficientsText(session, probe.latlong.image, options.sh, options.probe.input);
     session.stage("write", [&] {
         how.label = labelOf({Kernel::lambert, 0});
         if (has_map) session.write(options.output.output, results[0].map, how);

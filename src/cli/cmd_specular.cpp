@@ -104,9 +104,9 @@ void runSpecular(const SpecularOptions& options) {
     WriteOptions how = writeOptions(options.output, options.common, options.to);
     const std::vector<PrefilterRequest> requests = requestsOf(options, how);
     how.smooth = options.levels || !isMirror(requests[0].lobe);
-    const Panorama latlong =
-        toPrefilter(session.readProbe(options.probe), session.threads(), options.quality);
-    const auto results = runPrefilter(session, latlong, requests, options.quality);
+    const ProbeToPrefilter probe =
+        toPrefilter(session, session.readProbe(options.probe), requests, options.quality);
+    const auto results = runPrefilter(session, probe, requests, options.quality);
     if (options.levels) reportRoughness(session, 0, *options.levels, options.roughness_map);
     session.stage("write", [&] {
         const std::string& output = options.output.output;

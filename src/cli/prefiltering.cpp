@@ -1,6 +1,8 @@
 #include "cli/prefiltering.h"
 
+#include "convolve/reading_error.h"
 #include "core/error.h"
+#include "panorama/resample.h"
 #include "panorama/square_maps.h"
 
 #include <nlohmann/json.hpp>
@@ -46,15 +48,18 @@ nlohmann::ordered_json jsonOf(const PrefilterRequest& request, const PrefilterRe
     return json;
 }
 
-void requireError(const PrefilterResult& result, double asked) {
+void requireError(const ProbeToPrefilter& probe, const PrefilterResult& result, double asked) {
     if (result.error_bound <= asked) return;
-    char text[240];
+    const std::string read =
+        probe.source ? "read into " + std::to_string(probe.latlong.image.height) + " rows and "
+                     : "";
+    char text[280];
     std::snprintf(
         text, sizeof text,
-        "--max-error %g cannot be met: with harmonics up to degree %d and %d bright pixels "
-        "apart the bound of the relative RMSE is %.2g (estimate %.2g); allow a larger error, or "
-        "use --quality reference",
-        asked, result.band_limit, result.peaks_split, result.error_bound, result.error_estimate);
+        "--max-error %g cannot be met: %swith harmonics up to degree %d and %d bright pixels "
+        "apart the bound of the relative RMSE is %.2g (estimate %.2g); allow a larger error%s",
+        asked, read.c_str(), result.band_limit, result.peaks_split, result.error_bound,
+        result.error_estimate, probe.source ? "" : ", or use --quality reference");
     throw Error(ExitCode::accuracy, text);
 }
 
@@ -62,18 +67,11 @@ double errorOf(const QualityOptions& quality) {
     return quality.max_error.value_or(optionsFor(quality.quality).max_error);
 }
 
-/// How many times finer than the probe its lat-long is. Pixels of other layouts have their edges
-/// across a lat-long's: as many of these as the probe has leave an error of 7e-4 to 4e-3 in diffuse
-/// maps of faces of 16 texels, 6e-5 to 3e-4 of 64 and 2e-5 to 9e-5 of 128 (pisa, studio, sunset),
-/// this many 1e-5 to 5e-5 and about 1e-5. Square maps are read at the price of a polygon a pixel.
-int readingFactor(const Panorama& probe, double error) {
-    int most = error < 1e-4 ? 2048 : error < 1e-3 ? 1024 : 256;
-    if (isSquareMap(probe.layout)) most = std::min(most, 256);
-    const int height = latlongHeight(probe);
-    int factor = 1;
-    while (factor < 16 && 2 * factor * height <= most)
-        factor *= 2;
-    return factor;
+/// Rows beyond which no lat-long is read. Square maps, at the price of a polygon a pixel, are read
+/// into fewer where they are large and no more is asked for.
+int mostRows(const Panorama& probe, double error) {
+    const bool large = isSquareMap(probe.layout) && probe.image.height > 512;
+    return large && error > optionsFor(Quality::high).max_error ? 1024 : 2048;
 }
 
 } // namespace
@@ -100,23 +98,45 @@ void bindQuality(CLI::App& app, QualityOptions& options) {
         ->group("Accuracy");
 }
 
-Panorama toPrefilter(Panorama&& probe, int threads, const QualityOptions& quality) {
-    if (probe.layout == Layout::latlong) return std::move(probe);
-    const int finer = readingFactor(probe, errorOf(quality));
-    return {Layout::latlong, latlongOf(std::move(probe), threads, Enlarging::hold, finer)};
+ProbeToPrefilter toPrefilter(Session& session, Panorama&& probe,
+                             std::span<const PrefilterRequest> requests,
+                             const QualityOptions& quality) {
+    if (probe.layout == Layout::latlong) return {std::move(probe), std::nullopt};
+    constexpr int kFirstRows = 256; ///< from which on the error falls as it should
+    constexpr double kPart = 0.5;   ///< of the error allowed
+    const double allowed = kPart * errorOf(quality);
+    const int height = latlongHeight(probe), most = mostRows(probe, errorOf(quality));
+    int factor = 1;
+    while (factor * height < kFirstRows)
+        factor *= 2;
+    const auto read = [&](int finer) {
+        return resample(probe, Layout::latlong, finer * height, session.threads(), Enlarging::hold);
+    };
+    Panorama latlong = session.stage("resample", [&] {
+        Panorama first = read(factor);
+        double error = 0;
+        for (const ReadingError& e : readingErrors(first.image, requests, session.threads()))
+            error = std::max(error, e.bound);
+        int finer = factor;
+        for (; error > allowed && 2 * finer * height <= most; error /= 4)
+            finer *= 2;
+        return finer > factor ? read(finer) : first;
+    });
+    return {std::move(latlong), std::move(probe)};
 }
 
-std::vector<PrefilterResult> runPrefilter(Session& session, const Panorama& latlong,
+std::vector<PrefilterResult> runPrefilter(Session& session, const ProbeToPrefilter& probe,
                                           std::span<const PrefilterRequest> requests,
                                           const QualityOptions& quality) {
     PrefilterOptions options = optionsFor(quality.quality, session.threads());
     if (quality.max_error) options.max_error = *quality.max_error;
     options.progress = session.progress("convolve");
+    if (probe.source) options.source = &*probe.source;
     std::vector<PrefilterResult> results =
-        session.stage("convolve", [&] { return prefilter(latlong, requests, options); });
+        session.stage("convolve", [&] { return prefilter(probe.latlong, requests, options); });
     auto& maps = session.results()["maps"] = nlohmann::ordered_json::array();
     for (std::size_t i = 0; i < results.size(); ++i) {
-        if (quality.max_error) requireError(results[i], *quality.max_error);
+        if (quality.max_error) requireError(probe, results[i], *quality.max_error);
         maps.push_back(jsonOf(requests[i], results[i]));
     }
     return results;

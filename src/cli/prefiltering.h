@@ -22,13 +22,22 @@ struct QualityOptions {
 /// `--quality` and `--max-error`.
 void bindQuality(CLI::App& app, QualityOptions& options);
 
-/// The probe as the lat-long that is convolved: of other layouts with smaller pixels, up to 16
-/// times and as many as the quality asks for, so that reading them again leaves little.
-Panorama toPrefilter(Panorama&& probe, int threads, const QualityOptions& quality);
+/// What is convolved: a lat-long, and where it was read from a probe of another layout that one.
+struct ProbeToPrefilter {
+    Panorama latlong;
+    std::optional<Panorama> source;
+};
+
+/// Reads other layouts into a lat-long of as many rows as keep what that leaves below the error
+/// that the quality allows in every requested map, as far as 2048 do (of large square maps 1024,
+/// if not `high`).
+ProbeToPrefilter toPrefilter(Session& session, Panorama&& probe,
+                             std::span<const PrefilterRequest> requests,
+                             const QualityOptions& quality);
 
 /// Convolves the probe and puts each result's error, band limit, peaks and seconds into the report
 /// under `results`. Throws Error (accuracy) when an asked `--max-error` is not kept.
-std::vector<PrefilterResult> runPrefilter(Session& session, const Panorama& latlong,
+std::vector<PrefilterResult> runPrefilter(Session& session, const ProbeToPrefilter& probe,
                                           std::span<const PrefilterRequest> requests,
                                           const QualityOptions& quality);
 

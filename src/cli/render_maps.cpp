@@ -162,8 +162,8 @@ RenderMaps prepareMaps(Session& session, const ProbeOptions& options, const MapA
     if (convolve_specular) requests = specularRequests(maps.probe, material, maps.specular);
     if (convolve_diffuse) requests.push_back({{Kernel::lambert, 0}, Layout::faces, kDiffuseEdge});
     if (!requests.empty()) {
-        const Panorama latlong = toPrefilter(Panorama(maps.probe), session.threads(), {});
-        std::vector<PrefilterResult> results = runPrefilter(session, latlong, requests, {});
+        const ProbeToPrefilter probe = toPrefilter(session, Panorama(maps.probe), requests, {});
+        std::vector<PrefilterResult> results = runPrefilter(session, probe, requests, {});
         if (convolve_diffuse) {
             maps.diffuse = std::move(results.back().map);
             results.pop_back();

@@ -269,10 +269,9 @@ int latlongHeight(const Panorama& probe) {
     return like_latlong ? size : 2 * size;
 }
 
-Image latlongOf(Panorama&& probe, int threads, Enlarging enlarging, int finer) {
+Image latlongOf(Panorama&& probe, int threads, Enlarging enlarging) {
     if (probe.layout == Layout::latlong) return std::move(probe.image);
-    const int height = finer * latlongHeight(probe);
-    return resample(probe, Layout::latlong, height, threads, enlarging).image;
+    return resample(probe, Layout::latlong, latlongHeight(probe), threads, enlarging).image;
 }
 
 } // namespace ibl

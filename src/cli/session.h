@@ -116,11 +116,10 @@ private:
     std::unique_ptr<nlohmann::ordered_json> results_;
 };
 
-/// The probe as a lat-long image: itself, or resampled to `finer` times the height that keeps its
-/// resolution (twice a face's edge). For what integrates over it pixels stay areas, which keeps the
-/// energy at any size; what is looked at may be interpolated.
-Image latlongOf(Panorama&& probe, int threads, Enlarging enlarging = Enlarging::hold,
-                int finer = 1);
+/// The probe as a lat-long image: itself, or resampled to the height that keeps its resolution
+/// (twice a face's edge). For what integrates over it pixels stay areas, which keeps the energy;
+/// what is looked at may be interpolated.
+Image latlongOf(Panorama&& probe, int threads, Enlarging enlarging = Enlarging::hold);
 
 /// That height, of a probe that is no lat-long.
 int latlongHeight(const Panorama& probe);

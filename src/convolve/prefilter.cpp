@@ -8,6 +8,7 @@
 #include "convolve/near_map.h"
 #include "convolve/peak_map.h"
 #include "convolve/plan.h"
+#include "convolve/reading_error.h"
 #include "convolve/synthesis.h"
 #include "convolve/texels.h"
 #include "core/error.h"
@@ -131,10 +132,10 @@ PrefilterResult emptyResult(const PrefilterRequest& request) {
     return result;
 }
 
-PrefilterResult areaFiltered(const Engine& engine, const PrefilterRequest& request, int threads) {
+PrefilterResult areaFiltered(const Panorama& probe, const PrefilterRequest& request, int threads) {
     const Stopwatch watch;
     PrefilterResult result;
-    result.map = resample(engine.probe.panorama, request.layout, request.size, threads);
+    result.map = resample(probe, request.layout, request.size, threads);
     result.seconds_spatial = watch.seconds();
     result.error_bound = result.error_estimate = kFloatRounding;
     result.worst_bound = kFloatRounding;
@@ -269,7 +270,8 @@ PrefilterResult byMethod(const Engine& engine, const PrefilterRequest& request,
                          const LobePlan& lobe, const PrefilterOptions& options) {
     switch (lobe.method) {
     case Method::area:
-        return areaFiltered(engine, request, options.threads);
+        return areaFiltered(options.source ? *options.source : engine.probe.panorama, request,
+                            options.threads);
     case Method::harmonics:
         return byHarmonics(engine, request, lobe, options.max_error, options.threads);
     default:
@@ -291,6 +293,17 @@ void requireReachable(std::span<const Plan> plans, double max_error) {
         "RMSE is %g at least; allow a larger error",
         max_error, least);
     throw Error(ExitCode::accuracy, text);
+}
+
+/// Adds to the results' errors what reading the probe into this lat-long left.
+void addReading(const Image& latlong, std::span<const PrefilterRequest> requests, int threads,
+                std::vector<PrefilterResult>& results) {
+    const std::vector<ReadingError> errors = readingErrors(latlong, requests, threads);
+    for (std::size_t i = 0; i < errors.size(); ++i) {
+        results[i].error_bound += errors[i].bound;
+        results[i].error_estimate = std::hypot(results[i].error_estimate, errors[i].estimate);
+        if (results[i].worst_bound) *results[i].worst_bound += errors[i].worst;
+    }
 }
 
 } // namespace
@@ -318,10 +331,12 @@ std::vector<PrefilterResult> prefilter(const Panorama& latlong,
         const Engine engine = analyseProbe(latlong, statistics, {}, options);
         for (std::size_t i = 0; i < requests.size(); ++i) {
             results[i] = isMirror(requests[i].lobe)
-                             ? areaFiltered(engine, requests[i], options.threads)
+                             ? areaFiltered(options.source ? *options.source : latlong, requests[i],
+                                            options.threads)
                              : directSum(engine, requests[i], options.threads, progress);
             results[i].seconds_analysis = seconds_measuring;
         }
+        if (options.source) addReading(latlong.image, requests, options.threads, results);
         return results;
     }
     PrefilterOptions planned = options;
@@ -339,6 +354,7 @@ std::vector<PrefilterResult> prefilter(const Panorama& latlong,
             result.seconds_analysis = seconds_measuring + engine.seconds;
         }
     }
+    if (options.source) addReading(latlong.image, requests, options.threads, results);
     return results;
 }
 

@@ -45,6 +45,9 @@ struct PrefilterOptions {
     double max_error = 1e-4; ///< relative RMSE asked for (> 0); chooses band limits and peaks
     bool reference = false;  ///< direct double-precision sum instead of harmonics
     int threads = 0;         ///< 0: as many as the machine has; the result does not depend on it
+    /// What the lat-long was read from, where that has another layout: mirrors show it, and errors
+    /// hold what reading it left (reading_error.h).
+    const Panorama* source = nullptr;
     TellProgress progress{}; ///< of the direct sum, which lasts
 };
 

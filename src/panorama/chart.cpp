@@ -35,11 +35,12 @@ Vector corner(const Vector& middle, const Vector& off) {
 /// Appends what lies between the directions p and q of the image's points a and b.
 void appendSide(const Panorama& panorama, const V2d& a, const V2d& b, const V3d& p, const V3d& q,
                 double tolerance, int depth, SpherePolygon& outline) {
+    const bool near = p.dot(q) > 0.9;
+    if (near && panorama.layout == Layout::latlong && a.x == b.x) return; // a meridian
     const V2d c = (a + b) * 0.5;
     const Image& image = panorama.image;
     const V3d m =
         texelDirection(panorama.layout, image.width, image.height, c.x, c.y).value_or(kRim);
-    const bool near = p.dot(q) > 0.9;
     const V3d off = m - middleOf(p, q);
     if (near && off.length2() < tolerance * tolerance) {
         if (off.length2() > std::pow(kUnbent * tolerance, 2))
@@ -156,14 +157,18 @@ void appendCell(const Panorama& panorama, double x, double y, double size, doubl
                                      V2d(low, high)};
     const bool ball = isBallMap(panorama.layout);
     const auto direction = [&](const V2d& p) {
-        return texelDirection(panorama.layout, image.width, image.height, p.x, p.y).value_or(kRim);
+        return texelDirection(panorama.layout, image.width, image.height, x + p.x, y + p.y)
+            .value_or(kRim);
     };
+    const std::array<V3d, 4> directions{direction(corners[0]), direction(corners[1]),
+                                        direction(corners[2]), direction(corners[3])};
     for (std::size_t i = 0; i < 4; ++i) {
         const V2d from = corners[i] + V2d(x, y), to = corners[(i + 1) % 4] + V2d(x, y);
         const V2d within = ball ? withinDisc(from, to, 0.5 * image.width) : V2d(0, 1);
         if (within.x >= within.y) continue;
         const V2d a = from + (to - from) * within.x, b = from + (to - from) * within.y;
-        const V3d p = within.x > 0 ? kRim : direction(a), q = within.y < 1 ? kRim : direction(b);
+        const V3d p = within.x > 0 ? kRim : directions[i],
+                  q = within.y < 1 ? kRim : directions[(i + 1) % 4];
         outline.push_back(p);
         appendSide(panorama, a, b, p, q, tolerance, 0, outline);
         if (within.y < 1) outline.push_back(q);
@@ -205,6 +210,10 @@ void clipTo(const Sector& sector, const SpherePolygon& polygon, SpherePolygon& p
     SpherePolygon kept;
     for (const V3d& normal : sector.normals) {
         if (std::ranges::all_of(part, [&](const V3d& d) { return d.dot(normal) >= 0; })) continue;
+        if (std::ranges::all_of(part, [&](const V3d& d) { return d.dot(normal) <= 0; })) {
+            part.clear();
+            return;
+        }
         kept.clear();
         for (std::size_t i = 0; i < part.size(); ++i) { // Sutherland and Hodgman 1974
             const V3d &p = part[i], &q = part[(i + 1) % part.size()];
@@ -239,16 +248,64 @@ void carry(const Panorama& panorama, const Sector& sector, const SpherePolygon& 
         corners.pop_back();
     const std::size_t n = corners.size();
     if (n < 3) return;
+    V2d a = chartPoint(panorama, sector, corners[0]);
+    const V2d first = a;
     for (std::size_t i = 0; i < n; ++i) {
         const V3d &p = corners[i], &q = corners[(i + 1) % n];
+        const V2d b = i + 1 < n ? chartPoint(panorama, sector, q) : first;
         if (isApex(panorama.layout, p)) {
             carryApex(panorama, sector, p, corners[(i + n - 1) % n], q, flat);
-            continue; // a meridian follows
+        } else {
+            flat.push_back(a);
+            // A meridian leads to an apex, and another one away.
+            if (!isApex(panorama.layout, q)) carrySide(panorama, sector, p, q, a, b, 0, flat);
         }
-        const V2d a = chartPoint(panorama, sector, p);
-        flat.push_back(a);
-        if (!isApex(panorama.layout, q))
-            carrySide(panorama, sector, p, q, a, chartPoint(panorama, sector, q), 0, flat);
+        a = b;
+    }
+}
+
+ChartDensity chartDensity(const Panorama& panorama, const V2d& p) {
+    const double width = panorama.image.width, unit = 2 / width;
+    const double a = unit * p.x - 1, b = unit * p.y - 1;
+    // A function f of q, which is quadratic in a and b: (x, y) its gradient, of second derivatives
+    // 2 (1, 1) or, with `mixed`, 2 (2, 2) and 2 mixed.
+    const auto composed = [unit](double f, double df, double ddf, double x, double y,
+                                 double mixed) {
+        const double along = mixed == 0 ? 2 : 4;
+        return ChartDensity{f, V2d(x, y) * (df * unit), (along * df + ddf * x * x) * unit * unit,
+                            (2 * mixed * df + ddf * x * y) * unit * unit,
+                            (along * df + ddf * y * y) * unit * unit};
+    };
+    const auto ofSquare = [&](double square, double x, double y, double mixed) { // square^(-3/2)
+        const double f = 1 / (square * std::sqrt(square));
+        return composed(f, -1.5 * f / square, 3.75 * f / (square * square), x, y, mixed);
+    };
+    switch (panorama.layout) {
+    case Layout::angular: {
+        const double q = a * a + b * b, t = kPi * kPi * q, theta = std::sqrt(t);
+        if (theta < 0.1) { // sin(theta) / theta by its series
+            const double f = 1 - t / 6 * (1 - t / 20 * (1 - t / 42));
+            return composed(f, -kPi * kPi / 6 * (1 - t / 10 * (1 - t / 28)),
+                            kPi * kPi * kPi * kPi / 60 * (1 - t / 14), 2 * a, 2 * b, 0);
+        }
+        const double f = std::sin(theta) / theta;
+        const double df = (std::cos(theta) - f) / (2 * t);
+        const double ddf = (-f - 6 * df) / (4 * t);
+        return composed(f, kPi * kPi * df, kPi * kPi * kPi * kPi * ddf, 2 * a, 2 * b, 0);
+    }
+    case Layout::octahedral: { // a plane about the origin, seen from there
+        const double sa = std::copysign(1.0, a), sb = std::copysign(1.0, b);
+        const double c = 1 - std::abs(a) - std::abs(b);
+        const double x = c < 0 ? a - sa : a,
+                     z = c < 0 ? b - sb : b; // of the lower half turned over
+        return ofSquare(x * x + c * c + z * z, 2 * (x - c * sa), 2 * (z - c * sb), sa * sb);
+    }
+    case Layout::faces: {
+        const double t = b - 2 * std::clamp(std::floor(p.y / width), 0.0, 5.0);
+        return ofSquare(1 + a * a + t * t, 2 * a, 2 * t, 0);
+    }
+    default: // equal areas
+        return {1, V2d(0), 0, 0, 0};
     }
 }
 

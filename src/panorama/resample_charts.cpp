@@ -27,43 +27,6 @@ struct Sum {
     }
 };
 
-/// What one face sends to the lat-long: sums over columns x0 ... (around the seam) and rows y0 ...
-struct FaceSums {
-    int x0 = 0, y0 = 0, width = 0, height = 0;
-    std::vector<Sum> sums;
-
-    Sum* find(int x, int y, int columns) {
-        const int across = (x - x0 + columns) % columns, down = y - y0;
-        if (across >= width || down < 0 || down >= height) return nullptr;
-        return &sums[static_cast<std::size_t>(down) * static_cast<std::size_t>(width) +
-                     static_cast<std::size_t>(across)];
-    }
-};
-
-/// The columns and rows that a face can reach: an eighth of a turn to either side of its axis, or
-/// up to arctan sqrt 2 from its pole.
-FaceSums roomForFace(int face, const LatlongGrid& grid) {
-    FaceSums room;
-    const int rows = grid.rows();
-    if (face / 2 == 1) {
-        room.width = grid.columns;
-        while (room.height < rows && grid.theta[static_cast<std::size_t>(room.height)] <
-                                         std::atan(std::sqrt(2.0)) + 1e-9) {
-            ++room.height;
-        }
-        room.y0 = face == 2 ? 0 : rows - room.height;
-    } else {
-        constexpr std::array<double, 6> kCentre{0.25, 0.75, 0, 0, 0.5, 0};
-        const double at = kCentre[static_cast<std::size_t>(face)] * grid.columns - grid.first;
-        const int first = static_cast<int>(std::floor(at - grid.columns / 8.0)) - 1;
-        room.width = std::min(grid.columns, grid.columns / 4 + 4);
-        room.x0 = ((first % grid.columns) + grid.columns) % grid.columns;
-        room.height = rows;
-    }
-    room.sums.resize(static_cast<std::size_t>(room.width) * static_cast<std::size_t>(room.height));
-    return room;
-}
-
 } // namespace
 
 void latlongToCube(const Panorama& source, Panorama& result, Enlarging enlarging, int threads) {
@@ -113,26 +76,10 @@ void cubeToLatlong(const Panorama& source, Panorama& result, Enlarging enlarging
     const double pitch_on_face = centrePitch(2, edge, from_border);
     const double row_pitch = centrePitch(kPi, grid.rows(), to_border);
 
-    // Each face gathers its own sums, which are added in the order of the faces afterwards: the
-    // same bytes for any number of threads.
-    std::array<FaceSums, 6> sums;
-    if (areaShare(row_pitch / texelPitch(pitch_on_face, V3d(1)), enlarging) > 0) {
-        const CubeLatlongOverlaps overlaps =
-            cubeLatlongOverlaps(cubeGrid(edge, from_border), grid, threads);
-        parallelFor(6, threads, [&](std::size_t f) {
-            const int face = static_cast<int>(f);
-            sums[f] = roomForFace(face, grid);
-            for (int j = 0; j < edge; ++j) {
-                for (int i = 0; i < edge; ++i) {
-                    const V2i at = place.pixel(face, i, j);
-                    const float* pixel = source.image.at(at.x, at.y);
-                    forEachOverlap(overlaps, face, i, j, [&](int x, int y, double area) {
-                        sums[f].find(x, y, grid.columns)->add(pixel, area);
-                    });
-                }
-            }
-        });
-    }
+    CubeLatlongOverlaps overlaps;
+    if (areaShare(row_pitch / texelPitch(pitch_on_face, V3d(1)), enlarging) > 0)
+        overlaps = cubeLatlongOverlaps(cubeGrid(edge, from_border), grid, threads);
+    const CubeLatlongRows by_rows = byRows(overlaps);
     const Sampler sampler = makeSampler(source);
     std::vector<V3d> equator(static_cast<std::size_t>(grid.columns));
     for (int x = 0; x < grid.columns; ++x) {
@@ -143,22 +90,25 @@ void cubeToLatlong(const Panorama& source, Panorama& result, Enlarging enlarging
         const int y = static_cast<int>(row);
         const double v = centreAt(y, grid.rows(), to_border);
         const double sine = std::sin(kPi * v), cosine = std::cos(kPi * v);
+        std::vector<Sum> sums(overlaps.edge > 0 ? grid.columns : 0);
+        if (!sums.empty()) {
+            forEachOverlapInRow(overlaps, by_rows, y,
+                                [&](int face, int i, int j, int column, double area) {
+                                    const V2i at = place.pixel(face, i, j);
+                                    sums[column].add(source.image.at(at.x, at.y), area);
+                                });
+        }
         for (int x = 0; x < grid.columns; ++x) {
+            if (enlarging == Enlarging::hold) {
+                setPixel(result.image.at(x, y), sums[x].radiance / sums[x].area);
+                continue;
+            }
             const V3d& level = equator[static_cast<std::size_t>(x)];
             const V3d direction(level.x * sine, cosine, level.z * sine);
             const double share =
                 areaShare(row_pitch / texelPitch(pitch_on_face, direction), enlarging);
             V3d value(0);
-            if (share > 0) {
-                Sum total;
-                for (FaceSums& face : sums) {
-                    const Sum* sum = face.find(x, y, grid.columns);
-                    if (!sum) continue;
-                    total.radiance += sum->radiance;
-                    total.area += sum->area;
-                }
-                value += total.radiance / total.area * share;
-            }
+            if (share > 0) value += sums[x].radiance / sums[x].area * share;
             if (share < 1) value += radianceAt(sampler, direction) * (1 - share);
             setPixel(result.image.at(x, y), value);
         }

@@ -11,6 +11,8 @@
 
 #include "core/parallel.h"
 
+#include <limits>
+
 namespace ibl {
 namespace {
 
@@ -129,27 +131,31 @@ private:
         }
     }
 
-    /// Solid angle to a unit of area at a point of the chart.
-    double densityAt(const V2d& p) const {
-        const auto d = texelDirection(source_.layout, width_, height_, p.x, p.y);
-        return d ? solidAngleDensity(source_.layout, *d) : 0;
-    }
-
-    /// Of a piece of a pixel: where density is not constant by triangles, at the middles of their
-    /// sides, which is exact up to the second degree.
+    /// Of a piece of a pixel: of the density about one of its corners by its moments, exact up to
+    /// the second degree.
     double solidAngle(const std::vector<V2d>& p) const {
         if (source_.layout == Layout::latlong || source_.layout == Layout::mirrorBall)
             return area(p);
-        double sum = 0;
-        double first = densityAt((p[0] + p[1]) * 0.5);
-        for (std::size_t i = 1; i + 1 < p.size(); ++i) {
-            const V2d a = p[i] - p[0], b = p[i + 1] - p[0];
-            const double outer = densityAt((p[i] + p[i + 1]) * 0.5),
-                         last = densityAt((p[0] + p[i + 1]) * 0.5);
-            sum += (a.x * b.y - a.y * b.x) / 6 * (first + outer + last);
-            first = last;
+        double zeroth = 0, xx = 0, xy = 0, yy = 0;
+        V2d first(0);
+        for (std::size_t i = 1; i + 1 < p.size(); ++i) { // triangles about p[0]
+            const V2d a = p[i] - p[0], b = p[i + 1] - p[0], sum = a + b;
+            const double twice = a.x * b.y - a.y * b.x;
+            zeroth += twice;
+            first += sum * twice;
+            xx += (a.x * a.x + b.x * b.x + sum.x * sum.x) * twice;
+            xy += (a.x * a.y + b.x * b.y + sum.x * sum.y) * twice;
+            yy += (a.y * a.y + b.y * b.y + sum.y * sum.y) * twice;
         }
-        return sum;
+        if (zeroth == 0) return 0;
+        const V2d middle = first / (3 * zeroth); // of gravity, inside: on one side of a fold
+        const ChartDensity density = chartDensity(source_, p[0] + middle);
+        // Second moments about the middle.
+        xx = xx / 24 - 0.5 * zeroth * middle.x * middle.x;
+        xy = xy / 24 - 0.5 * zeroth * middle.x * middle.y;
+        yy = yy / 24 - 0.5 * zeroth * middle.y * middle.y;
+        return 0.5 * zeroth * density.value +
+               0.5 * (density.xx * xx + 2 * density.xy * xy + density.yy * yy);
     }
 
     void addPiece(int x, int y) {
@@ -186,6 +192,32 @@ double pitchAt(const Panorama& p, int x, int y) {
     return std::sqrt(texelSolidAngle(p.layout, width, height, x, y));
 }
 
+/// By no more than how many pixels' widths to a radian a square map's image stretches what lies
+/// within `radius` radians of a direction.
+double stretch(Layout layout, double width, const V3d& d, double radius) {
+    if (layout == Layout::octahedral) { // d / |d|_1 moves by sqrt(3) / |d|_1^2 at most
+        const double sum = std::abs(d.x) + std::abs(d.y) + std::abs(d.z) - std::sqrt(3.0) * radius;
+        return 0.5 * width * std::sqrt(3.0) / (sum * sum);
+    }
+    // Along the parallels, which are of sin(theta) and become circles of theta / pi and
+    // sin(theta / 2).
+    const double theta = std::acos(std::clamp(d.z, -1.0, 1.0)) + radius;
+    if (theta >= kPi) return std::numeric_limits<double>::infinity();
+    return layout == Layout::angular ? 0.5 * width / kPi * theta / std::sin(theta)
+                                     : 0.25 * width / std::cos(0.5 * theta);
+}
+
+/// Whether all of the lat-long's pixel about a direction, which is `p` in the square map's image,
+/// lies in one of its pixels: for sure where true.
+bool isWithinOnePixel(const Panorama& source, const Panorama& latlong, const V3d& d, const V2d& p) {
+    if (latlong.layout != Layout::latlong || !isSquareMap(source.layout)) return false;
+    const double radius =
+        std::sqrt(0.5) * kPi / std::min(latlong.image.height, latlong.image.width / 2);
+    const auto within = [](double x) { return 0.5 - std::abs(x - std::floor(x) - 0.5); };
+    const double room = std::min(within(p.x), within(p.y));
+    return radius < 0.1 && radius * stretch(source.layout, source.image.width, d, radius) < room;
+}
+
 } // namespace
 
 void throughSquareMap(const Panorama& source, Panorama& result, Enlarging enlarging, int threads) {
@@ -203,11 +235,16 @@ void throughSquareMap(const Panorama& source, Panorama& result, Enlarging enlarg
             const int i = std::clamp(static_cast<int>(p.x), 0, from.width - 1);
             const int j = std::clamp(static_cast<int>(p.y), 0, from.height - 1);
             const V2i at = owningTexel(source.layout, from.width, i, j).value_or(V2i(i, j));
-            const double pitch = pitchAt(result, x, y);
-            double share = areaShare(pitch / pitchAt(source, at.x, at.y), enlarging);
+            const double pitch = enlarging == Enlarging::hold ? 0 : pitchAt(result, x, y);
+            double share = enlarging == Enlarging::hold
+                               ? 1
+                               : areaShare(pitch / pitchAt(source, at.x, at.y), enlarging);
             V3d value(0), mean;
             if (share > 0) {
-                if (reader.mean(x, y, mean)) {
+                if (isWithinOnePixel(source, result, *d, p)) {
+                    const float* pixel = from.at(at.x, at.y);
+                    value = V3d(pixel[0], pixel[1], pixel[2]) * share;
+                } else if (reader.mean(x, y, mean)) {
                     value += mean * share;
                 } else {
                     share = 0;

@@ -177,10 +177,13 @@ V2d squareMapPoint(Layout layout, const V3d& direction) {
         const V2d q = p.y < 0 ? folded(p.x, p.z) : V2d(p.x, p.z);
         return {0.5 * (q.x + 1), 0.5 * (q.y + 1)};
     }
-    // Polar angle from +Z; the mirror ball's rho is sin(theta / 2).
-    const double across = std::hypot(direction.x, direction.y);
-    const double theta = std::atan2(across, direction.z);
-    const double rho = layout == Layout::angular ? theta / kPi : std::sin(0.5 * theta);
+    // By the polar angle theta from +Z; the mirror ball's rho is sin(theta / 2).
+    const double square = direction.x * direction.x + direction.y * direction.y;
+    const double across = std::sqrt(square), z = direction.z;
+    const double length = std::sqrt(square + z * z);
+    const double rho = layout == Layout::angular ? std::atan2(across, z) / kPi
+                       : z > 0                   ? across / std::sqrt(2 * length * (length + z))
+                                                 : std::sqrt((length - z) / (2 * length));
     if (across == 0) return {0.5 * (rho + 1), 0.5};
     const double right = layout == Layout::angular ? -direction.x : direction.x;
     return {0.5 * (right / across * rho + 1), 0.5 * (1 - direction.y / across * rho)};
