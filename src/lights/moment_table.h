@@ -20,7 +20,7 @@ public:
         std::int64_t parts[4];
     };
 
-    /// Of blocks of 2^shift x 2^shift pixels, the last ones smaller; takes 32 bytes a block.
+    /// Of blocks of 2^shift x 2^shift pixels, the last ones smaller; takes 96 bytes a block.
     MomentTable(const Image& latlong, int shift, int threads);
 
     /// In blocks, as all regions here.
@@ -36,9 +36,15 @@ public:
     /// W - |M|^2 / W, with W the energy and M the moment, since directions have length 1.
     double variance(const PixelRegion& region) const;
 
+    /// Root mean square over the channels of |M_c - M E_c / W|, in table units: what they are
+    /// displaced, times their energies E_c, by a light at the centroid of luminance.
+    double colourDisplacement(const PixelRegion& region) const;
+
 private:
     PixelBlocks blocks_;
-    PrefixTable<Sums> table_;
+    PrefixTable<Sums> table_;      ///< of luminance
+    PrefixTable<Sums> red_, blue_; ///< their parts in it, in units of 2^-62 of their own energies
+    double red_unit_ = 0, blue_unit_ = 0; ///< in units of table_
 };
 
 inline MomentTable::Sums operator+(const MomentTable::Sums& a, const MomentTable::Sums& b) {

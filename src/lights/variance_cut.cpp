@@ -2,9 +2,10 @@
 #include "lights/cutting.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <queue>
 #include <utility>
+#include <vector>
 
 namespace ibl {
 namespace {
@@ -45,33 +46,88 @@ std::pair<PixelRegion, PixelRegion> cutRegion(const MomentTable& table, const Pi
     return across.larger <= down.larger ? across.parts : down.parts;
 }
 
-/// Which region is cut next. Moving energy W by s changes the irradiance by W s to first order, but
-/// at the centroid luminance has no such term, and what is left falls faster with s, while what the
-/// channels differ falls slower with the count. By measurement W s^(2/3), s^2 the variance over W,
-/// does best over ten probes and 4 to 4096 lights: W s is 2 % worse and W s^2, the variance
-/// itself, a tenth (geometric means).
-double priority(const MomentTable& table, const PixelRegion& r) {
-    const double energy = static_cast<double>(table.energy(r));
-    return std::cbrt(energy * energy * table.variance(r));
+// Which region is cut next. A light at the centroid of luminance stands for a region of energy W
+// and variance V = W s^2 but for V / 4 times the Laplacian of the clamped cosine, summed over
+// regions: an error that has no random signs, and vanishes where V is spread evenly over the
+// sphere. So the region is cut that has the most of it to a solid angle, which in an even sky is
+// the largest, as the median's rounds have it; of one smaller than most, a sun, all of it counts.
+// What the channels' centroids differ adds to V, and a little W s, because signs cancel in pixels
+// below zero that V counts by their magnitude. The factors are from ten probes and 4 to 4096
+// lights; without colours errors under builtin:sky at 512 and 2048 lights are 8 and 28 % above the
+// median's, with them 10 and 4 % below.
+constexpr double kRoom = 0.3;        ///< of a light's share of the sphere, added to solid angles
+constexpr double kColours = 0.6;     ///< radians
+constexpr double kFirstOrder = 0.01; ///< radians
+
+struct Waiting {
+    int node;
+    double spread;
+    double solid_angle;
+};
+
+Waiting waitingOf(const MomentTable& table, const PixelRegion& r, int node) {
+    const double row = kPi / table.height();
+    const double variance = table.variance(r), energy = static_cast<double>(table.energy(r));
+    const double spread = variance + kColours * table.colourDisplacement(r) +
+                          kFirstOrder * std::sqrt(variance * energy);
+    return {node, spread,
+            2 * kPi * r.width / table.width() *
+                (std::cos(row * r.y) - std::cos(row * (r.y + r.height)))};
 }
+
+/// The regions that wait to be cut, the next one first.
+class Queue {
+    auto priority() const {
+        return [room = kRoom * share_](const Waiting& w) {
+            return std::pair(w.spread / (w.solid_angle + room), -w.node);
+        };
+    }
+
+public:
+    bool empty() const { return waiting_.empty(); }
+
+    void push(const Waiting& region) {
+        waiting_.push_back(region);
+        std::ranges::push_heap(waiting_, {}, priority());
+    }
+
+    int pop() {
+        std::ranges::pop_heap(waiting_, {}, priority());
+        const int node = waiting_.back().node;
+        waiting_.pop_back();
+        return node;
+    }
+
+    /// How many lights there are: their share of the sphere is halved at every power of two.
+    void setLit(int lit) {
+        const double share = 4 * kPi / std::bit_ceil(static_cast<unsigned>(lit) + 1);
+        if (share == share_) return;
+        share_ = share;
+        std::ranges::make_heap(waiting_, {}, priority());
+    }
+
+private:
+    std::vector<Waiting> waiting_;
+    double share_ = 4 * kPi;
+};
 
 } // namespace
 
 CutTree varianceCut(const MomentTable& table, int count) {
     CutTree tree;
     tree.nodes.push_back({openingColumn(table), 0, table.width(), table.height()});
-    std::priority_queue<std::pair<double, int>> waiting; // priority, minus the node
+    Queue waiting;
     int lit = 0;
     const auto add = [&](int node) {
         const PixelRegion& r = tree.nodes[node];
         if (table.energy(r) <= 0) return;
         ++lit;
-        if (r.width > 1 || r.height > 1) waiting.emplace(priority(table, r), -node);
+        if (r.width > 1 || r.height > 1) waiting.push(waitingOf(table, r, node));
     };
     add(0);
     while (lit < count && !waiting.empty()) {
-        const int node = -waiting.top().second;
-        waiting.pop();
+        waiting.setLit(lit);
+        const int node = waiting.pop();
         const auto [first, second] = cutRegion(table, tree.nodes[node]);
         tree.cut.push_back(node);
         tree.nodes.push_back(first);

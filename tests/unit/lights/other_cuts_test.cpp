@@ -1,12 +1,15 @@
 #include "lights/cut_lights.h"
 #include "lights/cutting.h"
 #include "lights/moment_table.h"
+#include "panorama/builtin.h"
 
 #include "unit/lights/light_probes.h"
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <initializer_list>
+#include <utility>
 
 namespace ibl {
 namespace {
@@ -143,6 +146,52 @@ TEST(VarianceCut, IsBetterThanTheMedianWhereASourceDominates) {
         }
     }
     expectBetterThanMedian(image, {16, 64, 256});
+}
+
+TEST(VarianceCut, IsBetterThanTheMedianUnderACloudlessSky) {
+    const Image sky = builtinProbe("builtin:sky", 512, 0).image;
+    for (const int count : {64, 128, 256, 512, 1024, 2048, 4096}) {
+        EXPECT_LT(lightsOfProbe(sky, LightMethod::variance, count).irradiance_error,
+                  lightsOfProbe(sky, LightMethod::median, count).irradiance_error)
+            << count;
+    }
+}
+
+TEST(MomentTable, ColoursAreDisplacedWhereTheirCentroidsDiffer) {
+    Image image = filled(16, 8, 0.f);
+    setPixel(image, 2, 3, 4.f, 1.f, 1.f);
+    setPixel(image, 9, 5, 1.f, 2.f, 8.f);
+    const MomentTable table(image, 0, 1);
+    constexpr int kPoints = 32;
+    std::array<double, 3> energy{};
+    std::array<V3d, 3> moment{V3d(0), V3d(0), V3d(0)};
+    for (const auto& [x, y] : {std::pair(2, 3), {9, 5}}) {
+        for (int p = 0; p < kPoints * kPoints; ++p) {
+            const double v = (y + (p / kPoints + 0.5) / kPoints) / image.height;
+            const V3d d = latlongDirection((x + (p % kPoints + 0.5) / kPoints) / image.width, v);
+            for (int c = 0; c < 3; ++c) {
+                const double value = image.at(x, y)[c] * std::sin(kPi * v);
+                energy[c] += value;
+                moment[c] += d * value;
+            }
+        }
+    }
+    const V3d weights(0.2125, 0.7154, 0.0721);
+    V3d whole(0);
+    double lit = 0, squares = 0;
+    for (int c = 0; c < 3; ++c) {
+        whole += moment[c] * weights[c];
+        lit += energy[c] * weights[c];
+    }
+    for (int c = 0; c < 3; ++c)
+        squares += (moment[c] - whole * (energy[c] / lit)).length2();
+    const PixelRegion all{0, 0, 16, 8};
+    EXPECT_NEAR(table.colourDisplacement(all) / static_cast<double>(table.energy(all)),
+                std::sqrt(squares / 3) / lit, 1e-3);
+    // One colour alone is where its luminance is.
+    EXPECT_NEAR(MomentTable(filled(16, 8, 3.f), 0, 1).colourDisplacement(all) /
+                    static_cast<double>(table.energy(all)),
+                0, 1e-12);
 }
 
 TEST(VarianceCut, RingingBesideASunDoesNotStallIt) {
