@@ -10,11 +10,16 @@
 
 #include <nlohmann/json.hpp>
 
+#include <array>
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <vector>
 
 namespace ibl {
 namespace {
+
+constexpr std::array kFormats{"exr", "ktx2", "dds"};
 
 struct BakeOptions {
     CommonOptions common;
@@ -151,6 +156,11 @@ void runBake(const BakeOptions& options) {
         session.writeText(folder.file("bake.json"),
                           manifest(options, session.results()["maps"], lights.lights.size()));
     });
+    for (const char* format : kFormats) {
+        const auto left = fileOfMap(folder.file("diffuse." + std::string(format)));
+        if (left && format != options.format)
+            session.note(*left, "is left of another format; remove it and what else is");
+    }
     session.finish();
     folder.keep();
 }
@@ -186,7 +196,7 @@ Command bindBake(CLI::App& root) {
     app->add_option("--format", options->format,
                     "Of the maps: exr, a file a face and level; ktx2 or dds, one cube map with "
                     "all levels")
-        ->check(CLI::IsMember({"exr", "ktx2", "dds"}))
+        ->check(CLI::IsMember(std::vector<std::string>(kFormats.begin(), kFormats.end())))
         ->type_name("FORMAT")
         ->capture_default_str()
         ->group("Output");

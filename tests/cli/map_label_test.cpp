@@ -78,6 +78,10 @@ TEST(MapLabel, LevelsLeftOfALongerChainAreToldAndPassedOver) {
                                             "--levels", "3", "-o", "b"});
     EXPECT_NE(note.find("specular_m3_px.exr: is left of a longer chain"), std::string::npos);
     underChain(scratch, "b/specular.exr");
+
+    const std::string other = make(scratch, {"bake", "builtin:sky", "--size", "16", "--lights", "1",
+                                             "--format", "ktx2", "-o", "b"});
+    EXPECT_NE(other.find("diffuse_px.exr: is left of another format"), std::string::npos);
 }
 
 TEST(MapLabel, MixedLevelsAndFacesAreRefused) {
