@@ -19,6 +19,7 @@
 namespace ibl {
 namespace {
 
+constexpr int kBands = 3; ///< of coefficients
 constexpr std::array kFormats{"exr", "ktx2", "dds"};
 
 struct BakeOptions {
@@ -88,7 +89,7 @@ std::string manifest(const BakeOptions& options, const nlohmann::ordered_json& m
             entry[key] = maps[k][key];
         levels.push_back(entry);
     }
-    json["coefficients"] = {{"file", "sh.json"}, {"convention", "radiance"}, {"order", 3}};
+    json["coefficients"] = {{"file", "sh.json"}, {"convention", "radiance"}, {"order", kBands}};
     json["lights"] = {{"file", "lights.json"}, {"count", lights}};
     return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
@@ -118,8 +119,10 @@ void runBake(const BakeOptions& options) {
          chainRequests(Kernel::ggx, levels, options.roughness_map, Layout::faces, options.size)) {
         requests.push_back(level);
     }
+    std::vector<PrefilterRequest> seen = requests;
+    seen.push_back(asSeenByCoefficients(kBands));
     const ProbeToPrefilter probe =
-        toPrefilter(session, session.readProbe(options.probe), requests, options.quality);
+        toPrefilter(session, session.readProbe(options.probe), seen, options.quality);
     const auto results = runPrefilter(session, probe, requests, options.quality);
     LightRequest cuts;
     cuts.count = options.lights;
@@ -128,7 +131,7 @@ void runBake(const BakeOptions& options) {
     lights.source = options.probe.input;
 
     const ShCoefficients sh = session.stage(
-        "project", [&] { return projectProbe(probe.latlong.image, 3, session.threads()); });
+        "project", [&] { return projectProbe(probe.latlong.image, kBands, session.threads()); });
 
     BakeFolder folder(options.folder);
     WriteOptions how;

@@ -92,8 +92,11 @@ void runDiffuse(const CLI::App& app, const DiffuseOptions& options) {
     const bool is_latlong = options.to == Layout::latlong;
     const PrefilterRequest request{
         {Kernel::lambert, 0}, options.to, options.size.value_or(is_latlong ? 128 : 64)};
+    std::vector<PrefilterRequest> seen;
+    if (has_map) seen.push_back(request);
+    if (!options.sh.file.empty()) seen.push_back(asSeenByCoefficients(options.sh.order));
     const ProbeToPrefilter probe =
-        toPrefilter(session, session.readProbe(options.probe), {&request, 1}, options.quality);
+        toPrefilter(session, session.readProbe(options.probe), seen, options.quality);
     std::vector<PrefilterResult> results;
     if (has_map) results = runPrefilter(session, probe, {&request, 1}, options.quality);
     const std::string sh =

@@ -67,11 +67,24 @@ double errorOf(const QualityOptions& quality) {
     return quality.max_error.value_or(optionsFor(quality.quality).max_error);
 }
 
-/// Rows beyond which no lat-long is read. Square maps, at the price of a polygon a pixel, are read
-/// into fewer where they are large and no more is asked for.
+/// Rows beyond which no lat-long is read that keeps the probe's resolution without. Square maps, at
+/// the price of a polygon a pixel, are read into fewer where they are large and no more is asked
+/// for.
 int mostRows(const Panorama& probe, double error) {
     const bool large = isSquareMap(probe.layout) && probe.image.height > 512;
-    return large && error > optionsFor(Quality::high).max_error ? 1024 : 2048;
+    const bool fewer = large && error > optionsFor(Quality::high).max_error;
+    return std::max(latlongHeight(probe), fewer ? 1024 : 2048);
+}
+
+/// The rows that a probe is first read into: its own number halved or doubled, 256 to 511, from
+/// where on the error falls as it should.
+int firstRows(const Panorama& probe) {
+    int rows = latlongHeight(probe);
+    while (rows < 256)
+        rows *= 2;
+    while (rows >= 512)
+        rows /= 2;
+    return rows;
 }
 
 } // namespace
@@ -102,27 +115,28 @@ ProbeToPrefilter toPrefilter(Session& session, Panorama&& probe,
                              std::span<const PrefilterRequest> requests,
                              const QualityOptions& quality) {
     if (probe.layout == Layout::latlong) return {std::move(probe), std::nullopt};
-    constexpr int kFirstRows = 256; ///< from which on the error falls as it should
-    constexpr double kPart = 0.5;   ///< of the error allowed
+    constexpr double kPart = 0.5; ///< of the error allowed
     const double allowed = kPart * errorOf(quality);
-    const int height = latlongHeight(probe), most = mostRows(probe, errorOf(quality));
-    int factor = 1;
-    while (factor * height < kFirstRows)
-        factor *= 2;
-    const auto read = [&](int finer) {
-        return resample(probe, Layout::latlong, finer * height, session.threads(), Enlarging::hold);
+    const int most = mostRows(probe, errorOf(quality));
+    const auto read = [&](int rows) {
+        return resample(probe, Layout::latlong, rows, session.threads(), Enlarging::hold);
     };
     Panorama latlong = session.stage("resample", [&] {
-        Panorama first = read(factor);
+        const int first = firstRows(probe);
+        Panorama coarse = read(first);
         double error = 0;
-        for (const ReadingError& e : readingErrors(first.image, requests, session.threads()))
+        for (const ReadingError& e : readingErrors(coarse.image, requests, session.threads()))
             error = std::max(error, e.bound);
-        int finer = factor;
-        for (; error > allowed && 2 * finer * height <= most; error /= 4)
-            finer *= 2;
-        return finer > factor ? read(finer) : first;
+        int rows = first;
+        for (; error > allowed && 2 * rows <= most; error /= 4)
+            rows *= 2;
+        return rows > first ? read(rows) : std::move(coarse);
     });
     return {std::move(latlong), std::move(probe)};
+}
+
+PrefilterRequest asSeenByCoefficients(int order) {
+    return {{Kernel::phong, static_cast<double>(order) * order}};
 }
 
 std::vector<PrefilterResult> runPrefilter(Session& session, const ProbeToPrefilter& probe,

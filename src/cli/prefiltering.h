@@ -28,12 +28,16 @@ struct ProbeToPrefilter {
     std::optional<Panorama> source;
 };
 
-/// Reads other layouts into a lat-long of as many rows as keep what that leaves below the error
-/// that the quality allows in every requested map, as far as 2048 do (of large square maps 1024,
-/// if not `high`).
+/// Reads other layouts into a lat-long of as few rows, 256 or more, as keep what that leaves below
+/// the error that the quality allows in every requested map, as far as 2048 do (of large square
+/// maps 1024, if not `high`).
 ProbeToPrefilter toPrefilter(Session& session, Panorama&& probe,
                              std::span<const PrefilterRequest> requests,
                              const QualityOptions& quality);
+
+/// A request that sees about as much of a probe as its harmonic coefficients of that many bands,
+/// for toPrefilter alone: of cos^n t with n = order^2, whose coefficients fall to 0.6 there.
+PrefilterRequest asSeenByCoefficients(int order);
 
 /// Convolves the probe and puts each result's error, band limit, peaks and seconds into the report
 /// under `results`. Throws Error (accuracy) when an asked `--max-error` is not kept.
