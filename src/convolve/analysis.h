@@ -4,6 +4,7 @@
 #include "convolve/legendre.h"
 #include "image/image.h"
 
+#include <limits>
 #include <vector>
 
 namespace ibl {
@@ -19,6 +20,8 @@ struct RowSpectrum {
     int degree = 0;
     LaneVector<double> values; ///< [block of kLanes rows][m][part][row in block], m = 0 .. degree
 };
+
+inline constexpr double kNoThreshold = std::numeric_limits<double>::infinity();
 
 /// `probe` (RGB) times `scale`, clamped to +-threshold.
 RowSpectrum analyseRows(const Image& probe, double scale, double threshold, int degree,

@@ -22,14 +22,11 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <optional>
 #include <string>
 
 namespace ibl {
 namespace {
-
-constexpr double kNoThreshold = std::numeric_limits<double>::infinity();
 
 class Stopwatch {
 public:

@@ -8,12 +8,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace ibl {
 namespace {
 
-constexpr double kNoThreshold = std::numeric_limits<double>::infinity();
 /// Degrees that a lobe leaves less of are not looked at: with the energy of all of them, which is a
 /// tenth of the probe's at most, that is below what `high` asks for.
 constexpr double kUnseen = 2e-6;

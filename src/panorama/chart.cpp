@@ -272,7 +272,7 @@ ChartDensity chartDensity(const Panorama& panorama, const V2d& p) {
     const auto composed = [unit](double f, double df, double ddf, double x, double y,
                                  double mixed) {
         const double along = mixed == 0 ? 2 : 4;
-        return ChartDensity{f, V2d(x, y) * (df * unit), (along * df + ddf * x * x) * unit * unit,
+        return ChartDensity{f, (along * df + ddf * x * x) * unit * unit,
                             (2 * mixed * df + ddf * x * y) * unit * unit,
                             (along * df + ddf * y * y) * unit * unit};
     };
@@ -305,7 +305,7 @@ ChartDensity chartDensity(const Panorama& panorama, const V2d& p) {
         return ofSquare(1 + a * a + t * t, 2 * a, 2 * t, 0);
     }
     default: // equal areas
-        return {1, V2d(0), 0, 0, 0};
+        return {1, 0, 0, 0};
     }
 }
 

@@ -40,11 +40,10 @@ void carry(const Panorama& panorama, const Sector& sector, const SpherePolygon& 
            std::vector<V2d>& flat);
 
 /// Solid angle to a unit of area at a point of the chart, but for a constant factor, and its
-/// derivatives by the chart's coordinates.
+/// second derivatives by the chart's coordinates.
 struct ChartDensity {
     double value;
-    V2d gradient;
-    double xx, xy, yy; ///< second derivatives
+    double xx, xy, yy;
 };
 
 ChartDensity chartDensity(const Panorama& panorama, const V2d& p);

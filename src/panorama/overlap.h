@@ -56,6 +56,7 @@ struct OctantTable {
 /// 45 degrees to either side of each, divide the sphere into eight wedges of one geometry: they
 /// differ only in where columns begin, which has at most four values, whole quarters of a column.
 struct CubeLatlongOverlaps {
+    enum Axis { kPlusZ, kPlusX, kMinusZ, kMinusX };
     struct Wedge {
         int table = 0;        ///< index into side and pole
         int first_column = 0; ///< that of `column` 0
@@ -67,6 +68,13 @@ struct CubeLatlongOverlaps {
     std::array<std::array<Wedge, 2>, 4> wedges{}; ///< [axis][towards higher columns]
     std::array<OctantTable, 4> side;              ///< a along s, b along t
     std::array<OctantTable, 4> pole;              ///< a along the axis, b <= a across it
+
+    /// The lat-long's column of a wedge's. Within one turn of the first; a remainder would cost
+    /// more than all else.
+    int column(const Wedge& wedge, int in_wedge) const {
+        const int x = wedge.first_column + wedge.step * in_wedge;
+        return x < 0 ? x + columns : x >= columns ? x - columns : x;
+    }
 };
 
 /// Time and memory are linear in texels + pixels. `threads` 0: the machine's.
@@ -88,31 +96,11 @@ inline int fromMiddle(int edge, int i, std::array<FromMiddle, 2>& halves) {
     return 2;
 }
 
-/// Part of a pixel, in the cell (a, b) of an octant.
-struct RowOverlap {
-    int a, b;
-    int column;
-    double area; ///< steradians, > 0
-};
-
-/// An octant's overlaps in order of their rows, those of row r from begin[r] to begin[r + 1].
-struct OctantRows {
-    std::vector<RowOverlap> overlaps;
-    std::vector<int> begin;
-};
-
-/// What the tables of `overlaps` hold, from the lat-long's side.
-struct CubeLatlongRows {
-    std::array<OctantRows, 4> side, pole;
-};
-
-CubeLatlongRows byRows(const CubeLatlongOverlaps& overlaps);
-
 /// Calls `use(x, y, area)` for every pixel that texel (i, j) of a face overlaps, perhaps in several
 /// parts, in a fixed order. The areas sum to the texel's solid angle.
 template <class Use>
 void forEachOverlap(const CubeLatlongOverlaps& overlaps, int face, int i, int j, Use&& use) {
-    enum { kPlusZ, kPlusX, kMinusZ, kMinusX };
+    using enum CubeLatlongOverlaps::Axis;
     const auto visit = [&](const std::array<OctantTable, 4>& tables, int axis, bool higher, int a,
                            int b, auto row_of) {
         const CubeLatlongOverlaps::Wedge& wedge = overlaps.wedges[axis][higher];
@@ -120,11 +108,7 @@ void forEachOverlap(const CubeLatlongOverlaps& overlaps, int face, int i, int j,
         const OctantOverlap* part = table.overlaps[a].data();
         const OctantOverlap* end = part + table.begin[a][b + 1];
         for (part += table.begin[a][b]; part != end; ++part) {
-            // Within one turn of the first; a remainder would cost more than all else here.
-            int x = wedge.first_column + wedge.step * part->column;
-            if (x < 0) x += overlaps.columns;
-            if (x >= overlaps.columns) x -= overlaps.columns;
-            use(x, row_of(part->row), part->area);
+            use(overlaps.column(wedge, part->column), row_of(part->row), part->area);
         }
     };
     std::array<FromMiddle, 2> across, down;
@@ -151,61 +135,6 @@ void forEachOverlap(const CubeLatlongOverlaps& overlaps, int face, int i, int j,
             if (t.cell >= s.cell) {
                 visit(overlaps.pole, plus_z ? kPlusZ : kMinusZ, plus_x != plus_z, t.cell, s.cell,
                       row_of);
-            }
-        }
-    }
-}
-
-/// Calls `use(face, i, j, x, area)` for every texel (i, j) of a face that overlaps a pixel (x, y)
-/// of row y, perhaps in several parts, in a fixed order. The areas sum to the pixels' solid angles.
-template <class Use>
-void forEachOverlapInRow(const CubeLatlongOverlaps& overlaps, const CubeLatlongRows& by_rows, int y,
-                         Use&& use) {
-    enum { kPlusZ, kPlusX, kMinusZ, kMinusX };
-    const int edge = overlaps.edge, rows = overlaps.rows;
-    const auto texel = [edge](int cell, bool positive) {
-        return positive ? edge / 2 + cell : (edge - 1) / 2 - cell;
-    };
-    // `place` gives a cell's texel.
-    const auto visit = [&](const std::array<OctantRows, 4>& tables, int axis, bool higher, int row,
-                           int face, auto place) {
-        const CubeLatlongOverlaps::Wedge& wedge = overlaps.wedges[axis][higher];
-        const OctantRows& table = tables[wedge.table];
-        if (row + 1 >= static_cast<int>(table.begin.size())) return;
-        for (int k = table.begin[row]; k < table.begin[row + 1]; ++k) {
-            const RowOverlap& part = table.overlaps[k];
-            int x = wedge.first_column + wedge.step * part.column;
-            if (x < 0) x += overlaps.columns;
-            if (x >= overlaps.columns) x -= overlaps.columns;
-            const auto [i, j] = place(part.a, part.b);
-            use(face, i, j, x, part.area);
-        }
-    };
-    constexpr std::array<int, 4> kSide{4, 0, 5, 1}; // of the axes
-    for (const bool down : {false, true}) {         // as in forEachOverlap
-        const int row = down ? y - rows / 2 : (rows - 1) / 2 - y;
-        if (row < 0) continue;
-        for (int axis = 0; axis < 4; ++axis) {
-            for (const bool right : {false, true}) {
-                visit(by_rows.side, axis, !right, row, kSide[axis], [&](int a, int b) {
-                    return std::array<int, 2>{texel(a, right), texel(b, down)};
-                });
-            }
-        }
-    }
-    for (const int face : {2, 3}) {
-        const int row = face == 2 ? y : rows - 1 - y;
-        for (const bool plus_x : {false, true}) {
-            for (const bool plus_z : {false, true}) {
-                const bool down = plus_z == (face == 2);
-                visit(by_rows.pole, plus_x ? kPlusX : kMinusX, plus_x == plus_z, row, face,
-                      [&](int a, int b) {
-                          return std::array<int, 2>{texel(a, plus_x), texel(b, down)};
-                      });
-                visit(by_rows.pole, plus_z ? kPlusZ : kMinusZ, plus_x != plus_z, row, face,
-                      [&](int a, int b) {
-                          return std::array<int, 2>{texel(b, plus_x), texel(a, down)};
-                      });
             }
         }
     }

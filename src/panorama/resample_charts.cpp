@@ -1,5 +1,6 @@
 // Between lat-longs and cubes, by the exact overlaps of their pixels where it shrinks.
 #include "panorama/lookup.h"
+#include "panorama/overlap_rows.h"
 #include "panorama/resample_parts.h"
 
 #include "core/parallel.h"
