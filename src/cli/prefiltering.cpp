@@ -2,7 +2,7 @@
 
 #include "convolve/reading_error.h"
 #include "core/error.h"
-#include "panorama/resample.h"
+#include "panorama/latlong_moments.h"
 #include "panorama/square_maps.h"
 
 #include <nlohmann/json.hpp>
@@ -80,9 +80,9 @@ int mostRows(const Panorama& probe, double error) {
 /// where on the error falls as it should.
 int firstRows(const Panorama& probe) {
     int rows = latlongHeight(probe);
-    while (rows < 256)
+    while (rows < 256 || rows % 2 == 1)
         rows *= 2;
-    while (rows >= 512)
+    while (rows >= 512 && rows % 4 == 0)
         rows /= 2;
     return rows;
 }
@@ -118,9 +118,7 @@ ProbeToPrefilter toPrefilter(Session& session, Panorama&& probe,
     constexpr double kPart = 0.5; ///< of the error allowed
     const double allowed = kPart * errorOf(quality);
     const int most = mostRows(probe, errorOf(quality));
-    const auto read = [&](int rows) {
-        return resample(probe, Layout::latlong, rows, session.threads(), Enlarging::hold);
-    };
+    const auto read = [&](int rows) { return latlongOfMoments(probe, rows, session.threads()); };
     Panorama latlong = session.stage("resample", [&] {
         const int first = firstRows(probe);
         Panorama coarse = read(first);
@@ -128,7 +126,7 @@ ProbeToPrefilter toPrefilter(Session& session, Panorama&& probe,
         for (const ReadingError& e : readingErrors(coarse.image, requests, session.threads()))
             error = std::max(error, e.bound);
         int rows = first;
-        for (; error > allowed && 2 * rows <= most; error /= 4)
+        for (; error > allowed && 2 * rows <= most; error /= 8)
             rows *= 2;
         return rows > first ? read(rows) : std::move(coarse);
     });

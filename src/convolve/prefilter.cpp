@@ -317,7 +317,9 @@ std::vector<PrefilterResult> prefilter(const Panorama& latlong,
                                        const PrefilterOptions& options) {
     checkRequests(latlong.image, requests, options);
     const Stopwatch watch;
-    const ProbeStatistics statistics = measureProbe(latlong.image, options.threads);
+    ProbeStatistics statistics = measureProbe(latlong.image, options.threads);
+    if (options.source) // one that keeps moments is below zero beside bright pixels
+        statistics.negative = measureProbe(options.source->image, options.threads).negative;
     const double seconds_measuring = watch.seconds();
     std::size_t rows = 0;
     for (const PrefilterRequest& request : requests)

@@ -5,9 +5,11 @@
 #include "convolve/texels.h"
 #include "core/parallel.h"
 #include "panorama/conventions.h"
+#include "panorama/latlong_moments.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace ibl {
 namespace {
@@ -16,45 +18,24 @@ namespace {
 /// tenth of the probe's at most, that is below what `high` asks for.
 constexpr double kUnseen = 2e-6;
 constexpr int kLeastDegree = 8;
+/// By how much less the error of a lat-long is than what is between it and one of half as many
+/// rows, at least, and about.
+constexpr double kLeastFall = 3, kFall = 9;
 
-/// Of half as many rows and columns (rounded up), the means of 2 x 2 pixels.
-struct Halved {
-    Image image;
-    double lost = 0; ///< integral over the sphere of the squares of what pixels differ from it
-};
-
-Halved halve(const Image& latlong, double scale, int threads) {
-    const int width = latlong.width, height = latlong.height;
-    Halved halved{Image((width + 1) / 2, (height + 1) / 2), 0};
-    std::vector<double> lost(halved.image.height);
-    parallelFor(lost.size(), threads, [&](std::size_t y) {
-        const int top = static_cast<int>(2 * y), rows = std::min(2, height - top);
-        const std::array<double, 2> weights{latlongPixelSolidAngle(width, height, top),
-                                            latlongPixelSolidAngle(width, height, top + 1)};
-        float* out = halved.image.row(static_cast<int>(y));
-        for (int left = 0; left < width; left += 2) {
-            const int columns = std::min(2, width - left);
-            std::array<double, 3> sum{}, squares{};
-            double area = 0;
-            for (int j = 0; j < rows; ++j) {
-                const double weight = weights[j];
-                const float* pixel = latlong.at(left, top + j);
-                for (int k = 0; k < 3 * columns; ++k) {
-                    const double value = pixel[k] * scale;
-                    sum[k % 3] += weight * value;
-                    squares[k % 3] += weight * value * value;
-                }
-                area += weight * columns;
-            }
-            for (int c = 0; c < 3; ++c) {
-                *out++ = static_cast<float>(sum[c] / area / scale);
-                lost[y] += std::max(0.0, squares[c] - sum[c] * sum[c] / area);
-            }
+/// The integral over the sphere of the squares of what the lat-long's pixels differ from the halved
+/// one's.
+double energyBetween(const Image& latlong, const Image& halved, double scale, int threads) {
+    std::vector<double> rows(latlong.height);
+    parallelFor(rows.size(), threads, [&](std::size_t row) {
+        const int y = static_cast<int>(row);
+        for (int x = 0; x < latlong.width; ++x) {
+            const float *p = latlong.at(x, y), *q = halved.at(x / 2, y / 2);
+            for (int c = 0; c < 3; ++c)
+                rows[row] += std::pow((static_cast<double>(p[c]) - q[c]) * scale, 2);
         }
+        rows[row] *= latlongPixelSolidAngle(latlong.width, latlong.height, y);
     });
-    for (const double row : lost)
-        halved.lost += row;
-    return halved;
+    return std::accumulate(rows.begin(), rows.end(), 0.0);
 }
 
 Harmonics harmonicsOf(const Image& image, double scale, int degree, int threads) {
@@ -102,16 +83,16 @@ std::vector<ReadingError> readingErrors(const Image& latlong,
     std::vector<ReadingError> errors(requests.size());
     if (degree < 0) return errors;
     const double scale = probeScale(latlong, threads);
-    const Halved halved = halve(latlong, scale, threads);
+    const Image halved = halveKeepingMoments(latlong, threads);
     Harmonics harmonics = harmonicsOf(latlong, scale, degree, threads);
     const std::vector<double> probe = powerSpectrum(harmonics);
-    const Harmonics of_half = harmonicsOf(halved.image, scale, degree, threads);
+    const Harmonics of_half = harmonicsOf(halved, scale, degree, threads);
     for (std::size_t i = 0; i < harmonics.coefficients.size(); ++i) {
         for (int part = 0; part < kParts; ++part)
             harmonics.coefficients[i][part] -= of_half.coefficients[i][part];
     }
     const std::vector<double> power = powerSpectrum(harmonics);
-    double left = halved.lost;
+    double left = energyBetween(latlong, halved, scale, threads);
     for (double s : power)
         left -= s;
     left = std::max(0.0, left);
@@ -127,9 +108,10 @@ std::vector<ReadingError> readingErrors(const Image& latlong,
             at_point += std::sqrt((2 * l + 1) / (4 * kPi) * square);
         }
         if (norm <= 0) continue;
-        errors[i].bound = std::sqrt((sum + most[degree] * most[degree] * left) / norm);
-        errors[i].worst = at_point / std::sqrt(probe[0] / (36 * kPi) + 1e-300);
-        errors[i].estimate = errors[i].bound / 3;
+        const double between = std::sqrt((sum + most[degree] * most[degree] * left) / norm);
+        errors[i].bound = between / kLeastFall;
+        errors[i].worst = at_point / std::sqrt(probe[0] / (36 * kPi) + 1e-300) / kLeastFall;
+        errors[i].estimate = between / kFall;
     }
     return errors;
 }

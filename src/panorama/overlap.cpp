@@ -46,6 +46,13 @@ struct Curve {
         }
     }
 
+    /// The height in z of its tangent: sin of latitude, 1 - cos of colatitude.
+    double height(double tangent) const {
+        const double root = std::sqrt(1 + tangent * tangent);
+        return kind == CurveKind::sideRow ? tangent / root
+                                          : tangent * tangent / (root * (root + 1));
+    }
+
     /// Where the curve has that height.
     Longitude at(double tangent, double columns_per_radian) const {
         double cosine, sine;
@@ -82,18 +89,40 @@ struct Curve {
 struct Bands {
     std::vector<double> tangent; ///< of the height; infinite from a right angle on
     std::vector<double> area;    ///< between the reference and the height, a radian of longitude
+    bool first_is_half = false;  ///< row 0's pixels reach as far to the reference's other side
+
+    double height(std::size_t row) const { return area[row + 1] - area[row]; }
+
+    /// Where a part of the row's height is in its pixels, in their heights from the middle.
+    double fromMiddle(std::size_t row, double part) const {
+        return row == 0 && first_is_half ? 0.5 * part : part - 0.5;
+    }
+};
+
+/// Solid angle, and that times the way from the middle of a pixel (see OctantOverlap).
+struct Mass {
+    double area = 0;
+    double across = 0;
+    double away = 0;
+
+    Mass operator+(const Mass& m) const {
+        return {area + m.area, across + m.across, away + m.away};
+    }
+    Mass operator-(const Mass& m) const {
+        return {area - m.area, across - m.across, away - m.away};
+    }
 };
 
 /// What lies between the reference and a curve, over a range of longitude, row by row: all of rows
-/// before `first`, `area` of rows first to last, nothing of later ones.
+/// before `first`, `masses` of rows first to last, nothing of later ones.
 struct Coverage {
     int first = 0;
     int last = -1;
-    std::vector<double> area;
+    std::vector<Mass> masses;
 
-    double of(int row, double full) const {
+    Mass of(int row, const Mass& full) const {
         if (row < first) return full;
-        return row > last ? 0 : area[static_cast<std::size_t>(row - first)];
+        return row > last ? Mass{} : masses[static_cast<std::size_t>(row - first)];
     }
 };
 
@@ -109,6 +138,14 @@ struct Octant {
         const double x = across == along ? end : std::atan2(across, along) * columns_per_radian;
         return {x, across / length, along / length};
     }
+
+    double middleOf(int column) const { return column + phase - 0.5; }
+
+    /// Of all of a row between two longitudes, in columns, of a column with that middle.
+    Mass full(std::size_t row, double from, double to, double middle) const {
+        const double area = std::abs(to - from) / columns_per_radian * bands.height(row);
+        return {area, area * (0.5 * (from + to) - middle), area * bands.fromMiddle(row, 0.5)};
+    }
 };
 
 /// Two longitudes nearer than this, in columns, are one: what is left between grid lines that ought
@@ -117,9 +154,20 @@ constexpr double kSameColumn = 1e-11;
 /// Overlaps below this part of a pixel are rounding of overlaps that are nothing.
 constexpr double kNoOverlap = 1e-12;
 
+/// Of `area` below a line over a row from one longitude to another, in columns, where it is at
+/// parts p and q of the row's height.
+Mass belowLine(const Bands& bands, std::size_t row, double area, double from, double to, double p,
+               double q, double middle) {
+    if (!(p + q > 0)) return {area, area * (0.5 * (from + to) - middle), 0};
+    const double x = from + (to - from) * (p + 2 * q) / (3 * (p + q));
+    const double y = (p * p + p * q + q * q) / (3 * (p + q));
+    return {area, area * (x - middle), area * bands.fromMiddle(row, y)};
+}
+
+/// What of a column's rows, about its `middle`, lies below the curve from a to b.
 Coverage& cover(const Octant& octant, const Curve& curve, const Longitude& a, const Longitude& b,
-                Coverage& out) {
-    out.area.clear();
+                double middle, Coverage& out) {
+    out.masses.clear();
     out.first = 0;
     out.last = -1;
     if (curve.g == 0) return out;
@@ -135,8 +183,13 @@ Coverage& cover(const Octant& octant, const Curve& curve, const Longitude& a, co
     // lies below the curve.
     const double radians = 1 / octant.columns_per_radian;
     const double total = std::abs(b.x - a.x) * radians;
+    const auto part = [&](std::size_t row, double tangent_of_height) {
+        const double z = curve.height(tangent_of_height);
+        return std::clamp((z - height[row]) / octant.bands.height(row), 0.0, 1.0);
+    };
     double done = 0;
     Longitude from = low;
+    double from_part = part(static_cast<std::size_t>(out.first), std::min(ta, tb));
     for (int row = out.first;; ++row) {
         const auto k = static_cast<std::size_t>(row);
         const bool last = !(tangent[k + 1] < highest);
@@ -144,10 +197,13 @@ Coverage& cover(const Octant& octant, const Curve& curve, const Longitude& a, co
         const double length = last ? total - done : std::abs(to.x - from.x) * radians;
         done += length;
         const double piece = std::max(0.0, curve.area(from, to) - length * height[k]);
-        out.area.push_back(piece + (total - done) * (height[k + 1] - height[k]));
+        const Mass below = belowLine(octant.bands, k, piece, from.x, to.x, from_part,
+                                     last ? part(k, highest) : 1, middle);
+        out.masses.push_back(below + octant.full(k, to.x, high.x, middle));
         out.last = row;
         if (last) return out;
         from = to;
+        from_part = 0;
     }
 }
 
@@ -159,15 +215,17 @@ struct Found {
     };
     std::vector<Part> parts;
 
-    void between(const Octant& octant, int cell, int column, double radians, const Coverage& inner,
-                 const Coverage& outer) {
+    void between(const Octant& octant, int cell, int column, const Longitude& from,
+                 const Longitude& to, const Coverage& inner, const Coverage& outer) {
+        const double middle = octant.middleOf(column);
         for (int row = inner.first; row <= outer.last; ++row) {
             const auto k = static_cast<std::size_t>(row);
-            const double band = octant.bands.area[k + 1] - octant.bands.area[k];
-            const double full = radians * band;
-            const double area = outer.of(row, full) - inner.of(row, full);
-            if (area > kNoOverlap * band / octant.columns_per_radian) {
-                parts.push_back({cell, {column, row, area}});
+            const Mass full = octant.full(k, from.x, to.x, middle);
+            const Mass mass = outer.of(row, full) - inner.of(row, full);
+            if (mass.area > kNoOverlap * octant.bands.height(k) / octant.columns_per_radian) {
+                parts.push_back({cell,
+                                 {column, row, mass.area, static_cast<float>(mass.across),
+                                  static_cast<float>(mass.away)}});
             }
         }
     }
@@ -210,18 +268,18 @@ void sideCells(const Octant& octant, const std::vector<double>& lines, int a, Fo
     const int cells = static_cast<int>(lines.size()) - 1;
     const auto k = static_cast<std::size_t>(a);
     Coverage inner, outer;
-    forEachColumn(octant, octant.longitude(lines[k], 1), octant.longitude(lines[k + 1], 1),
-                  [&](int column, const Longitude& from, const Longitude& to) {
-                      const double radians = (to.x - from.x) / octant.columns_per_radian;
-                      inner.first = 0;
-                      inner.last = -1;
-                      for (int b = 0; b < cells; ++b) {
-                          const double g = lines[static_cast<std::size_t>(b) + 1];
-                          cover(octant, {CurveKind::sideRow, g}, from, to, outer);
-                          found.between(octant, b, column, radians, inner, outer);
-                          std::swap(inner, outer);
-                      }
-                  });
+    forEachColumn(
+        octant, octant.longitude(lines[k], 1), octant.longitude(lines[k + 1], 1),
+        [&](int column, const Longitude& from, const Longitude& to) {
+            inner.first = 0;
+            inner.last = -1;
+            for (int b = 0; b < cells; ++b) {
+                const double g = lines[static_cast<std::size_t>(b) + 1];
+                cover(octant, {CurveKind::sideRow, g}, from, to, octant.middleOf(column), outer);
+                found.between(octant, b, column, from, to, inner, outer);
+                std::swap(inner, outer);
+            }
+        });
 }
 
 /// Cell [p0, p1] x [l0, l1] of +-Y, with l1 <= p0, or the half of it with l <= p on the diagonal. A
@@ -240,10 +298,10 @@ void poleCell(const Octant& octant, const std::vector<double>& lines, int a, int
     const auto part = [&](const Longitude& from, const Longitude& to, const Curve& in,
                           const Curve& out) {
         forEachColumn(octant, from, to, [&](int column, const Longitude& c0, const Longitude& c1) {
-            cover(octant, in, c0, c1, inner);
-            cover(octant, out, c0, c1, outer);
-            found.between(octant, b, column, (c1.x - c0.x) / octant.columns_per_radian, inner,
-                          outer);
+            const double middle = octant.middleOf(column);
+            cover(octant, in, c0, c1, middle, inner);
+            cover(octant, out, c0, c1, middle, outer);
+            found.between(octant, b, column, c0, c1, inner, outer);
         });
     };
     const Curve enters_across{CurveKind::poleAcross, l0}, enters_along{CurveKind::poleAlong, p0};
@@ -263,7 +321,7 @@ void poleCell(const Octant& octant, const std::vector<double>& lines, int a, int
 /// Heights of row boundaries from the equator. With an odd number of rows the middle one begins
 /// below the equator; its upper half is row 0 here.
 Bands sideBands(const LatlongGrid& grid) {
-    Bands bands{{0}, {0}};
+    Bands bands{{0}, {0}, grid.rows() % 2 == 1};
     for (int row = (grid.rows() - 1) / 2; row >= 0; --row) {
         const double theta = grid.theta[static_cast<std::size_t>(row)];
         bands.tangent.push_back(row == 0 ? std::numeric_limits<double>::infinity()

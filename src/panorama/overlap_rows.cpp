@@ -23,7 +23,8 @@ CubeLatlongRows byRows(const CubeLatlongOverlaps& overlaps) {
             for (int b = 0; b + 1 < static_cast<int>(table.begin[a].size()); ++b) {
                 for (int k = table.begin[a][b]; k < table.begin[a][b + 1]; ++k) {
                     const OctantOverlap& part = table.overlaps[a][k];
-                    rows.overlaps[next[part.row]++] = {a, b, part.column, part.area};
+                    rows.overlaps[next[part.row]++] = {a,         b,           part.column,
+                                                       part.area, part.across, part.away};
                 }
             }
         }

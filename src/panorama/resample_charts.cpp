@@ -1,4 +1,5 @@
 // Between lat-longs and cubes, by the exact overlaps of their pixels where it shrinks.
+#include "panorama/latlong_moments.h"
 #include "panorama/lookup.h"
 #include "panorama/overlap_rows.h"
 #include "panorama/resample_parts.h"
@@ -69,7 +70,8 @@ void latlongToCube(const Panorama& source, Panorama& result, Enlarging enlarging
     });
 }
 
-void cubeToLatlong(const Panorama& source, Panorama& result, Enlarging enlarging, int threads) {
+void cubeToLatlong(const Panorama& source, Panorama& result, Enlarging enlarging, int threads,
+                   Image* down) {
     const bool from_border = hasBorderRule(source.layout), to_border = hasBorderRule(result.layout);
     const CubePlacement place(source);
     const int edge = place.edge;
@@ -91,13 +93,25 @@ void cubeToLatlong(const Panorama& source, Panorama& result, Enlarging enlarging
         const int y = static_cast<int>(row);
         const double v = centreAt(y, grid.rows(), to_border);
         const double sine = std::sin(kPi * v), cosine = std::cos(kPi * v);
+        if (down) {
+            std::vector<MomentSum> moments(grid.columns);
+            forEachOverlapInRow(
+                overlaps, by_rows, y,
+                [&](int face, int i, int j, int column, double area, double right, double lower) {
+                    const V2i at = place.pixel(face, i, j);
+                    moments[column].add(source.image.at(at.x, at.y), area, right, lower);
+                });
+            storeRow(moments, y, result.image, *down);
+            return;
+        }
         std::vector<Sum> sums(overlaps.edge > 0 ? grid.columns : 0);
         if (!sums.empty()) {
-            forEachOverlapInRow(overlaps, by_rows, y,
-                                [&](int face, int i, int j, int column, double area) {
-                                    const V2i at = place.pixel(face, i, j);
-                                    sums[column].add(source.image.at(at.x, at.y), area);
-                                });
+            forEachOverlapInRow(
+                overlaps, by_rows, y,
+                [&](int face, int i, int j, int column, double area, double, double) {
+                    const V2i at = place.pixel(face, i, j);
+                    sums[column].add(source.image.at(at.x, at.y), area);
+                });
         }
         for (int x = 0; x < grid.columns; ++x) {
             if (enlarging == Enlarging::hold) {

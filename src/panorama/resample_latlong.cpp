@@ -1,5 +1,6 @@
 // Lat-long to lat-long. Area filter and interpolation are both products of one weight along the
 // parallel and one along the meridian, and so is their blend.
+#include "panorama/latlong_moments.h"
 #include "panorama/resample_parts.h"
 
 #include "core/parallel.h"
@@ -10,6 +11,8 @@ namespace {
 struct Tap {
     int index;
     double weight;
+    double moment = 0; ///< of an area: weight times its middle's way from that of the new pixel, in
+                       ///< columns, and in parts of the new row's height in z
 };
 
 /// Overlaps thinner than this part of a pixel are rounding of none.
@@ -30,8 +33,10 @@ std::vector<Tap> columnTaps(const LatlongGrid& from, const LatlongGrid& to, int 
         const double end = (x + 1 + to.first) * from.columns / to.columns - from.first;
         for (double a = begin; end - a > kNoOverlap;) {
             const double cell = std::floor(a + kNoOverlap), b = std::min(end, cell + 1);
+            const double part = (b - a) / (end - begin);
+            const double off = (0.5 * (a + b) - 0.5 * (begin + end)) / (end - begin);
             taps.push_back(
-                {wrapped(static_cast<long>(cell), from.columns), (b - a) / (end - begin) * share});
+                {wrapped(static_cast<long>(cell), from.columns), part * share, part * share * off});
             a = b;
         }
     }
@@ -70,11 +75,15 @@ std::vector<Tap> rowTaps(const Meridian& from, const Meridian& to, int y, Enlarg
              row + 1 < theta.size() && theta[row] < bottom; ++row) {
             const double a = std::max(top, theta[row]), b = std::min(bottom, theta[row + 1]);
             if (b - a <= kNoOverlap * (theta[row + 1] - theta[row])) continue;
-            taps.push_back({static_cast<int>(row), band(a, b)});
-            sum += taps.back().weight;
+            const double part = band(a, b);
+            const double off = (0.5 * (band(top, a) + band(top, b))) / band(top, bottom) - 0.5;
+            taps.push_back({static_cast<int>(row), part, part * off});
+            sum += part;
         }
-        for (Tap& tap : taps)
+        for (Tap& tap : taps) {
             tap.weight *= share / sum;
+            tap.moment *= share / sum;
+        }
     }
     if (share < 1) {
         // Nodes are the rows' centres and the poles, half a row outside them, or, by the border
@@ -118,7 +127,8 @@ LatlongPixels::LatlongPixels(const Panorama& p) : image_(&p.image) {
     image_ = &folded_;
 }
 
-void latlongToLatlong(const Panorama& source, Panorama& result, Enlarging enlarging, int threads) {
+void latlongToLatlong(const Panorama& source, Panorama& result, Enlarging enlarging, int threads,
+                      Image* down) {
     const bool from_border = hasBorderRule(source.layout), to_border = hasBorderRule(result.layout);
     const Meridian from{latlongGrid(source.image.width, source.image.height, from_border),
                         from_border};
@@ -133,6 +143,7 @@ void latlongToLatlong(const Panorama& source, Panorama& result, Enlarging enlarg
     }
     parallelFor(static_cast<std::size_t>(to.grid.rows()), threads, [&](std::size_t y) {
         std::vector<V3d> sums(static_cast<std::size_t>(columns), V3d(0));
+        std::vector<V3d> lower(down ? sums.size() : 0, V3d(0));
         for (const Tap& tap : rowTaps(from, to, static_cast<int>(y), enlarging)) {
             const bool pole = tap.index < 0 || tap.index >= rows;
             const V3d at_pole = tap.index < 0 ? north : south;
@@ -140,7 +151,20 @@ void latlongToLatlong(const Panorama& source, Panorama& result, Enlarging enlarg
             for (std::size_t x = 0; x < sums.size(); ++x) {
                 const V3d value = pole ? at_pole : V3d(row[3 * x], row[3 * x + 1], row[3 * x + 2]);
                 sums[x] += value * tap.weight;
+                if (down) lower[x] += value * tap.moment;
             }
+        }
+        if (down) {
+            std::vector<MomentSum> moments(across.size());
+            for (std::size_t x = 0; x < across.size(); ++x) {
+                MomentSum& sum = moments[x];
+                for (const Tap& tap : across[x]) {
+                    sum.add(sums[tap.index], tap.weight, tap.moment, 0);
+                    sum.down += lower[tap.index] * tap.weight;
+                }
+            }
+            storeRow(moments, static_cast<int>(y), result.image, *down);
+            return;
         }
         for (std::size_t x = 0; x < across.size(); ++x) {
             V3d value(0);

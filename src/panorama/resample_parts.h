@@ -11,12 +11,17 @@
 
 namespace ibl {
 
-void latlongToLatlong(const Panorama& source, Panorama& result, Enlarging enlarging, int threads);
+// Where `down` is given, of a lat-long's size, `enlarging` is to hold, and `result` gets its
+// pixels' moments along the rows, `down` those across (latlong_moments.h).
+void latlongToLatlong(const Panorama& source, Panorama& result, Enlarging enlarging, int threads,
+                      Image* down = nullptr);
 void latlongToCube(const Panorama& source, Panorama& result, Enlarging enlarging, int threads);
-void cubeToLatlong(const Panorama& source, Panorama& result, Enlarging enlarging, int threads);
+void cubeToLatlong(const Panorama& source, Panorama& result, Enlarging enlarging, int threads,
+                   Image* down = nullptr);
 void cubeToCube(const Panorama& source, Panorama& result, Enlarging enlarging, int threads);
 /// Where one of the two is a square map, the other one too, a lat-long or `faces`.
-void throughSquareMap(const Panorama& source, Panorama& result, Enlarging enlarging, int threads);
+void throughSquareMap(const Panorama& source, Panorama& result, Enlarging enlarging, int threads,
+                      Image* down = nullptr);
 
 /// The share of the area filter (the rest is interpolation) where a new texel is `ratio` old pixels
 /// wide: none up to 0.8, all from 1 on, smooth between.

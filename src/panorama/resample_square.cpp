@@ -5,6 +5,7 @@
 // area is solid angle, to rounding; of others to what a pixel's solid angle differs from its
 // density at the middle of each part.
 #include "panorama/chart.h"
+#include "panorama/latlong_moments.h"
 #include "panorama/lookup.h"
 #include "panorama/resample_parts.h"
 #include "panorama/square_maps.h"
@@ -19,15 +20,6 @@ namespace {
 /// Sides of texels are followed to this part of the source's mean pixel and of the texel, and their
 /// area kept: without that, 2e-4 left 5e-6 of a coarse map, in as much time as this leaves 7e-8.
 constexpr double kFollow = 1e-3;
-
-double area(const std::vector<V2d>& p) { ///< signed
-    double sum = 0;
-    for (std::size_t i = 1; i + 1 < p.size(); ++i) {
-        const V2d a = p[i] - p[0], b = p[i + 1] - p[0];
-        sum += 0.5 * (a.x * b.y - a.y * b.x);
-    }
-    return sum;
-}
 
 /// The part of a polygon between two lines across an axis (Sutherland and Hodgman 1974).
 void cutBetween(const std::vector<V2d>& polygon, int axis, double low, double high,
@@ -63,8 +55,7 @@ public:
 
     /// Mean of the source over what belongs to a texel; false if nothing was found.
     bool mean(int x, int y, V3d& value) {
-        sum_ = V3d(0);
-        weight_ = 0;
+        sum_ = {};
         const int n = result_.image.width;
         if (!isBallMap(result_.layout)) {
             read(x, y, 1);
@@ -78,9 +69,17 @@ public:
                 }
             }
         }
-        if (weight_ == 0) return false;
-        value = sum_ / weight_;
+        if (sum_.area == 0) return false;
+        value = sum_.radiance / sum_.area;
         return true;
+    }
+
+    /// What a lat-long's pixel (x, y) is made of, its area not above 0 where nothing was found.
+    MomentSum moments(int x, int y) {
+        sum_ = {};
+        pixel_ = V2i(x, y);
+        read(x, y, 1);
+        return sum_;
     }
 
 private:
@@ -131,11 +130,9 @@ private:
         }
     }
 
-    /// Of a piece of a pixel: of the density about one of its corners by its moments, exact up to
-    /// the second degree.
-    double solidAngle(const std::vector<V2d>& p) const {
-        if (source_.layout == Layout::latlong || source_.layout == Layout::mirrorBall)
-            return area(p);
+    /// Of a piece of a pixel: of the density about its middle by its moments, exact up to the
+    /// second degree.
+    double solidAngle(const std::vector<V2d>& p, V2d& middle) const {
         double zeroth = 0, xx = 0, xy = 0, yy = 0;
         V2d first(0);
         for (std::size_t i = 1; i + 1 < p.size(); ++i) { // triangles about p[0]
@@ -148,12 +145,15 @@ private:
             yy += (a.y * a.y + b.y * b.y + sum.y * sum.y) * twice;
         }
         if (zeroth == 0) return 0;
-        const V2d middle = first / (3 * zeroth); // of gravity, inside: on one side of a fold
-        const ChartDensity density = chartDensity(source_, p[0] + middle);
+        const V2d off = first / (3 * zeroth); // of gravity, inside: on one side of a fold
+        middle = p[0] + off;
+        if (source_.layout == Layout::latlong || source_.layout == Layout::mirrorBall)
+            return 0.5 * zeroth;
+        const ChartDensity density = chartDensity(source_, middle);
         // Second moments about the middle.
-        xx = xx / 24 - 0.5 * zeroth * middle.x * middle.x;
-        xy = xy / 24 - 0.5 * zeroth * middle.x * middle.y;
-        yy = yy / 24 - 0.5 * zeroth * middle.y * middle.y;
+        xx = xx / 24 - 0.5 * zeroth * off.x * off.x;
+        xy = xy / 24 - 0.5 * zeroth * off.x * off.y;
+        yy = yy / 24 - 0.5 * zeroth * off.y * off.y;
         return 0.5 * zeroth * density.value +
                0.5 * (density.xx * xx + 2 * density.xy * xy + density.yy * yy);
     }
@@ -161,10 +161,22 @@ private:
     void addPiece(int x, int y) {
         const auto at = owningTexel(source_.layout, width_, x, y);
         if (!at) return;
-        const double weight = solidAngle(piece_);
-        const float* p = source_.image.at(at->x, at->y);
-        sum_ += V3d(p[0], p[1], p[2]) * weight;
-        weight_ += weight;
+        V2d middle(0);
+        const double weight = solidAngle(piece_, middle);
+        const V2d off = pixel_ ? fromMiddle(middle) * weight : V2d(0);
+        sum_.add(source_.image.at(at->x, at->y), weight, off.x, off.y);
+    }
+
+    /// Where a point of the source's image is in the lat-long's pixel, in its sizes.
+    V2d fromMiddle(const V2d& p) const {
+        const int width = result_.image.width, height = result_.image.height;
+        const auto d = texelDirection(source_.layout, width_, height_, p.x, p.y);
+        if (!d) return V2d(0); // on the rim
+        const double column = (0.5 - std::atan2(d->x, d->z) / (2 * kPi)) * width;
+        const double top = std::cos(kPi * pixel_->y / height),
+                     bottom = std::cos(kPi * (pixel_->y + 1) / height);
+        return {std::remainder(column - pixel_->x - 0.5, width),
+                (0.5 * (top + bottom) - d->y) / (top - bottom)};
     }
 
     const Panorama& source_;
@@ -173,8 +185,8 @@ private:
     int width_, height_;
     double tolerance_;         ///< radians
     std::vector<double> rows_; ///< of a lat-long: -cos(theta) of its rows' edges
-    V3d sum_{0, 0, 0};
-    double weight_ = 0; ///< negative where texels run the other way around than the source's pixels
+    MomentSum sum_; ///< negative where texels run the other way around than the source's pixels
+    std::optional<V2i> pixel_; ///< of the lat-long, when moments are asked for
     SpherePolygon outline_, part_;
     std::vector<V2d> flat_, half_, strip_, piece_;
 };
@@ -220,13 +232,15 @@ bool isWithinOnePixel(const Panorama& source, const Panorama& latlong, const V3d
 
 } // namespace
 
-void throughSquareMap(const Panorama& source, Panorama& result, Enlarging enlarging, int threads) {
+void throughSquareMap(const Panorama& source, Panorama& result, Enlarging enlarging, int threads,
+                      Image* down) {
     const Sampler sampler = makeSampler(source);
     const Image& from = source.image;
     Image& image = result.image;
     parallelFor(static_cast<std::size_t>(image.height), threads, [&](std::size_t row) {
         AreaReader reader(source, result);
         const int y = static_cast<int>(row);
+        std::vector<MomentSum> moments(down ? image.width : 0);
         for (int x = 0; x < image.width; ++x) {
             const auto d =
                 texelDirection(result.layout, image.width, image.height, x + 0.5, y + 0.5);
@@ -235,6 +249,11 @@ void throughSquareMap(const Panorama& source, Panorama& result, Enlarging enlarg
             const int i = std::clamp(static_cast<int>(p.x), 0, from.width - 1);
             const int j = std::clamp(static_cast<int>(p.y), 0, from.height - 1);
             const V2i at = owningTexel(source.layout, from.width, i, j).value_or(V2i(i, j));
+            if (down) {
+                if (!isWithinOnePixel(source, result, *d, p)) moments[x] = reader.moments(x, y);
+                if (moments[x].area == 0) moments[x].add(from.at(at.x, at.y), 1, 0, 0);
+                continue;
+            }
             const double pitch = enlarging == Enlarging::hold ? 0 : pitchAt(result, x, y);
             double share = enlarging == Enlarging::hold
                                ? 1
@@ -253,6 +272,7 @@ void throughSquareMap(const Panorama& source, Panorama& result, Enlarging enlarg
             if (share < 1) value += radianceAt(sampler, *d, pitch) * (1 - share);
             setPixel(image.at(x, y), value);
         }
+        if (down) storeRow(moments, y, image, *down);
     });
 }
 
