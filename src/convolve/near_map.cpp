@@ -124,19 +124,21 @@ V3d weightedSum(const Image& probe, const NearWeights& weights, const Move& move
 
 } // namespace
 
-Image nearMap(const Panorama& probe, const NearField& field, const PrefilterRequest& request,
-              const Footprint& footprint, int threads, Progress* progress) {
+Image nearMap(const Panorama& probe, const Panorama& areas, const NearField& field,
+              const PrefilterRequest& request, const Footprint& footprint, int threads,
+              Progress* progress) {
     if (isCubeFamily(request.layout) && request.layout != Layout::faces) {
         PrefilterRequest faces = request;
         faces.layout = Layout::faces;
-        return resample({Layout::faces, nearMap(probe, field, faces, footprint, threads, progress)},
+        return resample({Layout::faces,
+                         nearMap(probe, areas, field, faces, footprint, threads, progress)},
                         request.layout, request.size, threads)
             .image;
     }
     const V2i size = layoutExtent(request.layout, request.size);
     const MapExtent map{request.layout, size.x, size.y, texelAngle(request)};
     const Image area =
-        resample(probe, request.layout, request.size, threads, Enlarging::hold).image;
+        resample(areas, request.layout, request.size, threads, Enlarging::hold).image;
     // Texels in order of the one whose weights they use.
     struct Texel {
         int key, x, y;

@@ -17,26 +17,29 @@
 namespace ibl {
 namespace {
 
-/// Sides of texels are followed to this part of the source's mean pixel and of the texel, and their
-/// area kept: without that, 2e-4 left 5e-6 of a coarse map, in as much time as this leaves 7e-8.
+/// Sides of texels are followed to this part of the source's mean pixel and of the texel, and of
+/// texels larger than pixels to as many times less, and their area kept. A lamp on a side is shared
+/// out wrongly by that much, and counts for the more the fewer texels there are: with 1e-3 of a
+/// pixel an angular map of 9 of a night was off by 1.5e-5, in half the time.
 constexpr double kFollow = 1e-3;
 
-/// The part of a polygon between two lines across an axis (Sutherland and Hodgman 1974).
-void cutBetween(const std::vector<V2d>& polygon, int axis, double low, double high,
-                std::vector<V2d>& half, std::vector<V2d>& kept) {
-    const auto cut = [axis](const std::vector<V2d>& from, double limit, double sign,
-                            std::vector<V2d>& to) {
-        to.clear();
-        for (std::size_t i = 0; i < from.size(); ++i) {
-            const V2d &p = from[i], &q = from[(i + 1) % from.size()];
-            const double over_p = sign * (p[axis] - limit), over_q = sign * (q[axis] - limit);
-            if (over_p <= 0) to.push_back(p);
-            if ((over_p < 0 && over_q > 0) || (over_p > 0 && over_q < 0))
-                to.push_back(p + (q - p) * (over_p / (over_p - over_q)));
+using Polygon = std::vector<V2d>;
+
+/// Cuts a polygon in two along a line across an axis (Sutherland and Hodgman 1974).
+void cut(const Polygon& polygon, int axis, double line, Polygon& below, Polygon& above) {
+    below.clear();
+    above.clear();
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const V2d &p = polygon[i], &q = polygon[i + 1 < polygon.size() ? i + 1 : 0];
+        const double over_p = p[axis] - line, over_q = q[axis] - line;
+        if (over_p <= 0) below.push_back(p);
+        if (over_p >= 0) above.push_back(p);
+        if ((over_p < 0 && over_q > 0) || (over_p > 0 && over_q < 0)) {
+            const V2d at = p + (q - p) * (over_p / (over_p - over_q));
+            below.push_back(at);
+            above.push_back(at);
         }
-    };
-    cut(polygon, low, -1, half);
-    cut(half, high, 1, kept);
+    }
 }
 
 class AreaReader {
@@ -47,8 +50,8 @@ public:
           sectors_(sectorsOf(source.layout)),
           width_(source.image.width),
           height_(source.image.height),
-          tolerance_(kFollow * std::sqrt(4 * kPi) /
-                     std::sqrt(std::max(pixelsOf(source.image), pixelsOf(result.image)))) {
+          tolerance_(kFollow * std::sqrt(4 * kPi * pixelsOf(result.image)) /
+                     std::max(pixelsOf(source.image), pixelsOf(result.image))) {
         for (int j = 0; j <= height_ && source.layout == Layout::latlong; ++j)
             rows_.push_back(-std::cos(kPi * j / height_));
     }
@@ -107,32 +110,52 @@ private:
         return rows_.empty() ? row : rows_[static_cast<std::size_t>(row)];
     }
 
-    /// Cuts a polygon of the chart into pixels.
+    /// Cuts a polygon of the chart into pixels, by halves: a vertex is met once a halving.
     void readFlat() {
-        double left = flat_[0].x, right = left, top = flat_[0].y, bottom = top;
-        for (const V2d& p : flat_) {
-            left = std::min(left, p.x);
-            right = std::max(right, p.x);
-            top = std::min(top, p.y);
-            bottom = std::max(bottom, p.y);
+        const auto [top, bottom] = extent(flat_, 1);
+        readRows(flat_, std::clamp(rowAt(top), 0, height_ - 1),
+                 std::clamp(rowAt(bottom), 0, height_ - 1), 0);
+    }
+
+    static std::pair<double, double> extent(const Polygon& polygon, int axis) {
+        const auto [least, most] = std::ranges::minmax_element(
+            polygon, [axis](const V2d& p, const V2d& q) { return p[axis] < q[axis]; });
+        return {(*least)[axis], (*most)[axis]};
+    }
+
+    void readRows(const Polygon& polygon, int first, int last, std::size_t depth) {
+        if (polygon.size() < 3) return;
+        if (first == last) {
+            const auto [left, right] = extent(polygon, 0);
+            const auto column = [&](double x) {
+                return std::clamp(static_cast<int>(std::floor(x)), 0, width_ - 1);
+            };
+            readColumns(polygon, first, column(left), column(right), depth);
+            return;
         }
-        const int first_row = std::clamp(rowAt(top), 0, height_ - 1),
-                  last_row = std::clamp(rowAt(bottom), 0, height_ - 1);
-        const int first = std::clamp(static_cast<int>(std::floor(left)), 0, width_ - 1),
-                  last = std::clamp(static_cast<int>(std::floor(right)), 0, width_ - 1);
-        for (int y = first_row; y <= last_row; ++y) {
-            cutBetween(flat_, 1, rowTop(y), rowTop(y + 1), half_, strip_);
-            if (strip_.size() < 3) continue;
-            for (int x = first; x <= last; ++x) {
-                cutBetween(strip_, 0, x, x + 1, half_, piece_);
-                if (piece_.size() >= 3) addPiece(x, y);
-            }
+        const int middle = (first + last + 1) / 2;
+        auto& [upper, lower] = halves_[depth];
+        cut(polygon, 1, rowTop(middle), upper, lower);
+        readRows(upper, first, middle - 1, depth + 1);
+        readRows(lower, middle, last, depth + 1);
+    }
+
+    void readColumns(const Polygon& polygon, int row, int first, int last, std::size_t depth) {
+        if (polygon.size() < 3) return;
+        if (first == last) {
+            addPiece(polygon, first, row);
+            return;
         }
+        const int middle = (first + last + 1) / 2;
+        auto& [left, right] = halves_[depth];
+        cut(polygon, 0, middle, left, right);
+        readColumns(left, row, first, middle - 1, depth + 1);
+        readColumns(right, row, middle, last, depth + 1);
     }
 
     /// Of a piece of a pixel: of the density about its middle by its moments, exact up to the
     /// second degree.
-    double solidAngle(const std::vector<V2d>& p, V2d& middle) const {
+    double solidAngle(const Polygon& p, V2d& middle) const {
         double zeroth = 0, xx = 0, xy = 0, yy = 0;
         V2d first(0);
         for (std::size_t i = 1; i + 1 < p.size(); ++i) { // triangles about p[0]
@@ -158,11 +181,11 @@ private:
                0.5 * (density.xx * xx + 2 * density.xy * xy + density.yy * yy);
     }
 
-    void addPiece(int x, int y) {
+    void addPiece(const Polygon& piece, int x, int y) {
         const auto at = owningTexel(source_.layout, width_, x, y);
         if (!at) return;
         V2d middle(0);
-        const double weight = solidAngle(piece_, middle);
+        const double weight = solidAngle(piece, middle);
         const V2d off = pixel_ ? fromMiddle(middle) * weight : V2d(0);
         sum_.add(source_.image.at(at->x, at->y), weight, off.x, off.y);
     }
@@ -188,7 +211,8 @@ private:
     MomentSum sum_; ///< negative where texels run the other way around than the source's pixels
     std::optional<V2i> pixel_; ///< of the lat-long, when moments are asked for
     SpherePolygon outline_, part_;
-    std::vector<V2d> flat_, half_, strip_, piece_;
+    Polygon flat_;
+    std::array<std::pair<Polygon, Polygon>, 40> halves_; ///< 2^17 rows and columns at most
 };
 
 /// Distance between the centres of an image's pixels about (x, y), radians: of lat-longs from row
