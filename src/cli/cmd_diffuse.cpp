@@ -75,7 +75,7 @@ std::string coefficientsText(Session& session, const Image& latlong, const ShOpt
                                                  : ShWindow::automatic) == ShWindow::automatic;
     double lambda = 0;
     if (windowed) {
-        lambda = session.stage("window", [&] { return leastDamping(coefficients); });
+        lambda = session.stage("window", [&] { return leastDamping(coefficients, source); });
         coefficients = damp(coefficients, lambda);
         session.results()["sh_lambda"] = lambda;
     }

@@ -76,8 +76,8 @@ int mostRows(const Panorama& probe, double error) {
     return std::max(latlongHeight(probe), fewer ? 1024 : 2048);
 }
 
-/// The rows that a probe is first read into: its own number halved or doubled, 256 to 511, from
-/// where on the error falls as it should.
+/// The rows that a probe is first read into: its own number halved or doubled, even and from 256
+/// on, from where on the error falls as it should.
 int firstRows(const Panorama& probe) {
     int rows = latlongHeight(probe);
     while (rows < 256 || rows % 2 == 1)

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 
 namespace ibl {
 namespace {
@@ -180,15 +181,16 @@ std::array<double, 3> leastOverSphere(const ShCoefficients& coefficients) {
             leastOfChannel(grid, f, 0, 2)};
 }
 
-double leastDamping(const ShCoefficients& coefficients) {
+double leastDamping(const ShCoefficients& coefficients, std::string_view subject) {
     const ShCoefficients f = orthonormal(coefficients);
     const BandGrid grid = makeGrid(f);
     double lambda = 0;
     for (int c = 0; c < 3; ++c) {
         const double mean = f.values[0][c] * std::sqrt(1 / (4 * kPi));
         if (mean < 0 || (mean == 0 && !isFlat(f, c))) {
-            throw Error(ExitCode::input, "probe: a channel's mean is not above 0, which no window "
-                                         "mends; repair the probe or use none");
+            throw Error(ExitCode::input, std::string(subject) +
+                                             ": a channel's mean is not above 0, which no window "
+                                             "mends; repair the probe or use none");
         }
         const auto holds = [&](double tried) {
             return leastOfChannel(grid, damp(f, tried), tried, c) >= -1e-9 * mean;

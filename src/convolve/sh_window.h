@@ -5,6 +5,7 @@
 #include "convolve/sh_coefficients.h"
 
 #include <array>
+#include <string_view>
 
 namespace ibl {
 
@@ -22,8 +23,8 @@ std::array<double, 3> leastOverSphere(const ShCoefficients& coefficients);
 
 /// The lambda, one for all channels so that colours keep their balance, at which the least value
 /// over the sphere first reaches 0 (to 1e-9 of the mean); 0 where it is not below 0 already. Found
-/// by bisection to a relative 1e-4, from the side that is not negative. Throws Error (input) for a
-/// channel whose mean is below 0, which no window helps.
-double leastDamping(const ShCoefficients& coefficients);
+/// by bisection to a relative 1e-4, from the side that is not negative. Throws Error (input)
+/// naming `subject` for a channel whose mean is below 0, which no window helps.
+double leastDamping(const ShCoefficients& coefficients, std::string_view subject = "probe");
 
 } // namespace ibl
