@@ -19,8 +19,8 @@ namespace {
 constexpr double kUnseen = 2e-6;
 constexpr int kLeastDegree = 8;
 /// By how much less the error of a lat-long is than what is between it and one of half as many
-/// rows, at least, and about.
-constexpr double kLeastFall = 3, kFall = 9;
+/// rows: at least (3 were it to fall with their square), and about.
+constexpr double kLeastFall = 2, kFall = 9;
 
 /// The integral over the sphere of the squares of what the lat-long's pixels differ from the halved
 /// one's.
