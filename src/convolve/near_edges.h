@@ -9,7 +9,7 @@
 namespace ibl {
 
 /// Curves are cut in pieces of at most this many radians, and of this much of a turn.
-inline constexpr double kLongest = 0.06;
+inline constexpr double kLongest = 0.02;
 
 /// Pixels about a texel.
 struct Block {
