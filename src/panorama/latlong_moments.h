@@ -15,7 +15,7 @@
 namespace ibl {
 
 /// The probe, of any layout, as a lat-long of `rows` >= 1 and twice as many columns, whose pixels
-/// keep its energy and first moments. Beside bright pixels some are below zero, by up to an eighth
+/// keep its energy and first moments. Beside bright pixels some are below zero, by up to a quarter
 /// of them. `threads` 0: the machine's; the result does not depend on it.
 Panorama latlongOfMoments(const Panorama& probe, int rows, int threads);
 
