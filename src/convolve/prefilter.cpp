@@ -133,7 +133,8 @@ PrefilterResult emptyResult(const PrefilterRequest& request) {
 PrefilterResult areaFiltered(const Panorama& probe, const PrefilterRequest& request, int threads) {
     const Stopwatch watch;
     PrefilterResult result;
-    result.map = resample(probe, request.layout, request.size, threads);
+    // Of pixels as areas where the map enlarges them too: what the lobe tends to as it narrows.
+    result.map = resample(probe, request.layout, request.size, threads, Enlarging::hold);
     result.seconds_spatial = watch.seconds();
     result.error_bound = result.error_estimate = kFloatRounding;
     result.worst_bound = kFloatRounding;

@@ -1,6 +1,7 @@
 // Between lat-longs and cubes, by the exact overlaps of their pixels where it shrinks.
 #include "panorama/latlong_moments.h"
 #include "panorama/lookup.h"
+#include "panorama/overlap_means.h"
 #include "panorama/overlap_rows.h"
 #include "panorama/resample_parts.h"
 
@@ -43,29 +44,25 @@ void latlongToCube(const Panorama& source, Panorama& result, Enlarging enlarging
             cubeGrid(edge, to_border),
             latlongGrid(source.image.width, source.image.height, from_border), threads);
     }
+    const LatlongPixels pixels(source);
+    if (overlaps.edge > 0) overlapMeans(overlaps, pixels, place, result.image, threads);
     // The corners' texels are the smallest.
     const double least = texelPitch(pitch_on_face, V3d(1)) / row_pitch;
-    const bool area_alone = areaShare(least, enlarging) == 1;
-    const LatlongPixels pixels(source);
+    if (areaShare(least, enlarging) == 1) return;
     const Sampler sampler = makeSampler(source);
-
     parallelFor(static_cast<std::size_t>(6 * edge), threads, [&](std::size_t task) {
         const int face = static_cast<int>(task) / edge, j = static_cast<int>(task) % edge;
         const double t = 2 * centreAt(j, edge, to_border) - 1;
         for (int i = 0; i < edge; ++i) {
             const V3d direction = cubeDirection({face, 2 * centreAt(i, edge, to_border) - 1, t});
-            const double pitch = area_alone ? 0 : texelPitch(pitch_on_face, direction);
-            const double share = area_alone ? 1 : areaShare(pitch / row_pitch, enlarging);
-            V3d value(0);
-            if (share > 0) {
-                Sum sum;
-                forEachOverlap(overlaps, face, i, j,
-                               [&](int x, int y, double area) { sum.add(pixels.at(x, y), area); });
-                value += sum.radiance / sum.area * share;
-            }
-            if (share < 1) value += radianceAt(sampler, direction, pitch) * (1 - share);
+            const double pitch = texelPitch(pitch_on_face, direction);
+            const double share = areaShare(pitch / row_pitch, enlarging);
+            if (share == 1) continue;
             const V2i at = place.pixel(face, i, j);
-            setPixel(result.image.at(at.x, at.y), value);
+            float* texel = result.image.at(at.x, at.y);
+            V3d value = radianceAt(sampler, direction, pitch) * (1 - share);
+            if (share > 0) value += V3d(texel[0], texel[1], texel[2]) * share;
+            setPixel(texel, value);
         }
     });
 }

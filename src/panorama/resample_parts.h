@@ -68,6 +68,7 @@ public:
     explicit LatlongPixels(const Panorama& p);
     const float* at(int x, int y) const { return image_->at(x, y); }
     const float* row(int y) const { return image_->row(y); }
+    int columns() const { return image_->width; }
 
 private:
     Image folded_;

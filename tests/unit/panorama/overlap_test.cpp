@@ -1,4 +1,5 @@
 #include "panorama/overlap.h"
+#include "panorama/overlap_means.h"
 
 #include <gtest/gtest.h>
 
@@ -71,6 +72,42 @@ TEST_P(Overlaps, AreWhereTexelAndPixelMeet) {
                         latlongDirection((x + 0.5 + grid.first) / grid.columns, theta / kPi);
                     ASSERT_LT((p - d).length(), reach) << face << " " << i << " " << j;
                 });
+            }
+        }
+    }
+}
+
+// What octants share is summed texel by texel, all else octants side by side.
+TEST_P(Overlaps, MeansAreThoseOfEveryTexelsParts) {
+    const Case c = GetParam();
+    const LatlongGrid grid = latlongGrid(c.width, c.height, c.border_latlong);
+    const CubeLatlongOverlaps overlaps =
+        cubeLatlongOverlaps(cubeGrid(c.edge, c.border_cube), grid, 0);
+    Panorama source{c.border_latlong ? Layout::exrLatlong : Layout::latlong,
+                    Image(c.width, c.height)};
+    for (std::size_t k = 0; k < source.image.pixels.size(); ++k)
+        source.image.pixels[k] = static_cast<float>((k * 7919) % 10007);
+    const LatlongPixels pixels(source);
+    const Layout layout = c.border_cube ? Layout::exrCube : Layout::hcross;
+    const V2i extent = layoutExtent(layout, c.edge);
+    Panorama result{layout, Image(extent.x, extent.y)};
+    const CubePlacement place(result);
+    overlapMeans(overlaps, pixels, place, result.image, 2);
+    for (int face = 0; face < 6; ++face) {
+        for (int j = 0; j < c.edge; ++j) {
+            for (int i = 0; i < c.edge; ++i) {
+                V3d sum(0);
+                double all = 0;
+                forEachOverlap(overlaps, face, i, j, [&](int x, int y, double area) {
+                    const float* p = pixels.at(x, y);
+                    sum += V3d(p[0], p[1], p[2]) * area;
+                    all += area;
+                });
+                const V2i at = place.pixel(face, i, j);
+                for (int channel = 0; channel < 3; ++channel) {
+                    ASSERT_NEAR(result.image.at(at.x, at.y)[channel], sum[channel] / all, 1e-3)
+                        << face << " " << i << " " << j;
+                }
             }
         }
     }
