@@ -26,7 +26,7 @@ void fillRow(const PrefilterRequest& request, const Footprint& footprint, const 
         std::copy_n(row, 3 * count, values.begin());
     }
     if (parts.peaks) {
-        addPeaks(*parts.peaks, points.u, points.v, values.data());
+        addPeaks(*parts.peaks, points, values.data());
     }
     for (std::size_t i = 0; parts.direct && i < count; ++i) {
         addDirect(*parts.direct, makeAxis(points.u[i], points.v[i]), &values[3 * i]);

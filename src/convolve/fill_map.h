@@ -4,7 +4,7 @@
 #include "convolve/direct.h"
 #include "convolve/error_bound.h"
 #include "convolve/evaluate.h"
-#include "convolve/peaks.h"
+#include "convolve/peak_sum.h"
 #include "convolve/prefilter.h"
 #include "convolve/synthesis.h"
 #include "convolve/texels.h"

@@ -173,6 +173,22 @@ double lobeScaleAt(const Lobe& lobe, double width, double t) {
     return std::min(smooth, to_horizon);
 }
 
+double lobeScaleFrom(const Lobe& lobe, double width, double scale) {
+    if (lobe.kernel == Kernel::charlie) {
+        const double a2 = lobe.parameter * lobe.parameter;
+        return std::max(2 * scale, 2 * std::atan(0.5 * scale / a2));
+    }
+    if (width >= scale) return 0;
+    return lobe.kernel == Kernel::ggx ? 2 * scale : std::numeric_limits<double>::infinity();
+}
+
+std::optional<RationalLobe> rationalLobe(const Lobe& lobe) {
+    if (lobe.kernel == Kernel::lambert) return RationalLobe{1, 1};
+    if (lobe.kernel != Kernel::ggx) return std::nullopt;
+    const double a2 = alphaOf(lobe) * alphaOf(lobe);
+    return RationalLobe{a2 / kPi, a2};
+}
+
 double lobeReach(const Lobe& lobe) {
     // What lies beyond t is below 2 cos^n t of Phong's integral, below 2 cos^n(t/2) of Blinn's.
     const double n = lobe.parameter, half_pi = 0.5 * kPi;

@@ -15,6 +15,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -88,6 +89,19 @@ double lobeWidth(const Lobe& lobe);
 /// Angle (radians) over which the lobe, of that width, changes by its own size at t from its axis:
 /// as far as its horizon or its poles in the complex plane.
 double lobeScaleAt(const Lobe& lobe, double width, double t);
+
+/// Angle (radians) from which on that is `scale` or more, but for the horizon; infinite where it
+/// never is.
+double lobeScaleFrom(const Lobe& lobe, double width, double scale);
+
+/// Lambert's and GGX's lobe in c = cos t >= 0: K(t) = factor c / (a2 + (1 - a2) (1 - c) / 2)^2.
+struct RationalLobe {
+    double factor;
+    double a2;
+};
+
+/// Nothing for the other kernels.
+std::optional<RationalLobe> rationalLobe(const Lobe& lobe);
 
 /// Angle (radians) beyond which lies less than 1e-17 of the integral: at most pi / 2.
 double lobeReach(const Lobe& lobe);

@@ -1,6 +1,5 @@
 #include "convolve/peaks.h"
 
-#include "convolve/edges.h"
 #include "convolve/probe_scale.h"
 #include "core/parallel.h"
 #include "panorama/conventions.h"
@@ -93,36 +92,6 @@ std::vector<Candidate> brightestPixels(const Image& probe, double scale,
     return brightest;
 }
 
-/// n x n points over a pixel, Gauss's in (psi, theta): in cos theta the pixels at the poles would
-/// not be smooth.
-PixelPoints pixelPoints(int width, int height, int column, int row, int n) {
-    const GaussRule& rule = gaussRule(n);
-    PixelPoints points;
-    double total = 0;
-    for (int b = 0; b < n; ++b) {
-        const double theta = kPi * (row + 0.5 + 0.5 * rule.nodes[b]) / height;
-        for (int a = 0; a < n; ++a) {
-            const double psi = 2 * kPi * (column + 0.5 + 0.5 * rule.nodes[a]) / width;
-            points.directions.push_back(polarDirection(theta, psi));
-            points.weights.push_back(rule.weights[a] * rule.weights[b] * std::sin(theta));
-            total += points.weights.back();
-        }
-    }
-    for (double& w : points.weights)
-        w *= latlongPixelSolidAngle(width, height, row) / total;
-    return points;
-}
-
-PeakRectangle rectangleOf(const Peak& peak, int width, int height) {
-    PeakRectangle r;
-    r.edges = {kPi * peak.row / height, kPi * (peak.row + 1) / height,
-               2 * kPi * peak.column / width, 2 * kPi * (peak.column + 1) / width};
-    r.size = std::max(kPi / height, 2 * kPi / width * std::sin(kPi * (peak.row + 0.5) / height));
-    r.coarse = pixelPoints(width, height, peak.column, peak.row, 2);
-    r.fine = pixelPoints(width, height, peak.column, peak.row, 4);
-    return r;
-}
-
 } // namespace
 
 ProbeStatistics measureProbe(const Image& probe, int threads) {
@@ -187,63 +156,6 @@ std::vector<Peak> splitPeaks(const ProbeStatistics& statistics, double threshold
 V3d polarDirection(double theta, double psi) {
     const double s = std::sin(theta);
     return {s * std::cos(psi), s * std::sin(psi), std::cos(theta)};
-}
-
-PeakSum makePeakSum(const std::vector<Peak>& peaks, int width, int height, const Lobe& lobe) {
-    PeakSum sum{peaks,
-                {},
-                lobe,
-                LobeMassBeyond(lobe),
-                lobeWidth(lobe),
-                1 / lobeIntegral(lobe),
-                {lobeReach(lobe), lobeVariation(lobe)}};
-    for (const Peak& peak : peaks)
-        sum.rectangles.push_back(rectangleOf(peak, width, height));
-    return sum;
-}
-
-namespace {
-
-/// acos to 7e-5, for choices (Abramowitz and Stegun 1964, 4.4.45).
-double roughAngle(double cosine) {
-    const double x = std::min(1.0, std::abs(cosine));
-    const double angle =
-        std::sqrt(1 - x) * (1.5707288 + x * (-0.2121144 + x * (0.0742610 - 0.0187293 * x)));
-    return cosine < 0 ? kPi - angle : angle;
-}
-
-} // namespace
-
-// By Gauss points where the lobe is smooth over the pixel (2 x 2 are off by (size / scale)^4 / 4320
-// of it, 4 x 4 by (size / scale)^8 / 1.8e10), else by the pixel's edges.
-double peakMass(const PeakSum& sum, std::size_t p, const Axis& axis, const V3d& x) {
-    const PeakRectangle& r = sum.rectangles[p];
-    const double t = roughAngle(x.dot(r.coarse.directions[0]));
-    if (t > 0.5 * kPi + 2 * r.size) return 0;
-    const double scale = lobeScaleAt(sum.lobe, sum.width, t);
-    if (r.size > 0.5 * scale) {
-        const auto q = [&](double h) { return -sum.mass_beyond(h); };
-        return rectangleMass(q, 1, sum.disc, axis, r.edges);
-    }
-    const PixelPoints& points = r.size > 0.1 * scale ? r.fine : r.coarse;
-    double mass = 0;
-    for (std::size_t i = 0; i < points.weights.size(); ++i) {
-        mass += points.weights[i] * lobeValue(sum.lobe, x.dot(points.directions[i]));
-    }
-    return sum.norm * mass;
-}
-
-void addPeaks(const PeakSum& sum, const std::vector<double>& u, const std::vector<double>& v,
-              double* values) {
-    for (std::size_t i = 0; i < u.size(); ++i) {
-        const Axis axis = makeAxis(u[i], v[i]);
-        const V3d x = polarDirection(axis.theta, axis.psi);
-        for (std::size_t p = 0; p < sum.peaks.size(); ++p) {
-            const double mass = peakMass(sum, p, axis, x);
-            for (int c = 0; c < 3; ++c)
-                values[3 * i + c] += sum.peaks[p].excess[c] * mass;
-        }
-    }
 }
 
 } // namespace ibl

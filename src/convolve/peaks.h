@@ -6,8 +6,6 @@
 // at the threshold (non-negative where the probe is).
 #pragma once
 
-#include "convolve/edges.h"
-#include "convolve/lobe.h"
 #include "image/image.h"
 #include "panorama/conventions.h"
 
@@ -56,41 +54,5 @@ std::vector<Peak> splitPeaks(const ProbeStatistics& statistics, double threshold
 
 /// The direction of colatitude theta and azimuth psi, with the pole along +Z.
 V3d polarDirection(double theta, double psi);
-
-/// Gauss points over a pixel as polar directions.
-struct PixelPoints {
-    std::vector<V3d> directions;
-    std::vector<double> weights; ///< summing to the pixel's solid angle
-};
-
-/// Where a peak lies, and points in it.
-struct PeakRectangle {
-    Rectangle edges;
-    double size; ///< the longer edge, radians
-    PixelPoints coarse, fine;
-};
-
-/// Peaks and the lobe that they are convolved with.
-struct PeakSum {
-    std::vector<Peak> peaks;
-    std::vector<PeakRectangle> rectangles;
-    Lobe lobe;
-    LobeMassBeyond mass_beyond;
-    double width; ///< lobeWidth
-    double norm;  ///< 1 / integral of the lobe
-    Disc disc;    ///< where the lobe is not zero
-};
-
-/// `width` x `height` is the probe's size.
-PeakSum makePeakSum(const std::vector<Peak>& peaks, int width, int height, const Lobe& lobe);
-
-/// The lobe's normalised mass over peak p's pixel, seen along the axis, which is also given as its
-/// polarDirection x.
-double peakMass(const PeakSum& sum, std::size_t p, const Axis& axis, const V3d& x);
-
-/// Adds the peaks' part of the lobe-weighted mean at lat-long points: values[3 i + channel] += sum
-/// of excess times the lobe's normalised mass over the peak's pixel.
-void addPeaks(const PeakSum& sum, const std::vector<double>& u, const std::vector<double>& v,
-              double* values);
 
 } // namespace ibl

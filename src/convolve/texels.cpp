@@ -24,6 +24,11 @@ V3d directionAt(Layout layout, int width, int height, V2d place) {
     return texelDirection(layout, width, height, place.x, place.y).value_or(V3d(0, 0, -1));
 }
 
+/// A direction with the pole along +Z.
+V3d polar(const V3d& d) {
+    return {-d.z, d.x, d.y};
+}
+
 /// A rule of at least n points on [-1, 1]: Gauss's, for many points in equal parts.
 GaussRule footprintRule(int n) {
     constexpr int kPart = 16;
@@ -90,19 +95,21 @@ void forParts(double from, double to, const std::vector<double>& kinks, const Ta
 /// rectangle in the image, so a product of Gauss rules has the highest order.
 void addTexel(Layout layout, int width, int height, int x, int y, const V3d& centre,
               double footprint_scale, const GaussRule& rule, RowPoints& points) {
-    if (rule.nodes.size() == 1) {
-        const V2d p = latlongPoint(centre);
+    const auto look = [&](const V3d& d) {
+        const V2d p = latlongPoint(d);
         points.u.push_back(p.x);
         points.v.push_back(p.y);
+        points.direction.push_back(polar(d));
+    };
+    if (rule.nodes.size() == 1) {
+        look(centre);
         points.share.push_back(1);
         return;
     }
     const std::size_t first = points.u.size();
     double total = 0;
     const auto add = [&](const V3d& d, double area) {
-        const V2d p = latlongPoint(d);
-        points.u.push_back(p.x);
-        points.v.push_back(p.y);
+        look(d);
         // At a pole that is a texel's centre the density is 0.
         points.share.push_back(area * std::max(1e-300, solidAngleDensity(layout, d)));
         total += points.share.back();
@@ -227,7 +234,7 @@ V3d texelPlace(const MapExtent& map, int x, int y, V2d offset) {
     constexpr double kWithin = 1 - 1e-10;
     const V3d d =
         directionAt(map.layout, map.width, map.height, V2d(x + 0.5, y + 0.5) + offset * kWithin);
-    return {-d.z, d.x, d.y};
+    return polar(d);
 }
 
 RowPoints texelPoints(const MapExtent& map, int x, int y, const Footprint& footprint) {

@@ -58,7 +58,8 @@ struct RowPoints {
     std::vector<std::size_t> first;  ///< of each texel's points, and one beyond all
     std::vector<double> u;           ///< lat-long points
     std::vector<double> v;
-    std::vector<double> share; ///< of each point in its texel's mean; they sum to 1
+    std::vector<V3d> direction; ///< the same as polar directions (peaks.h)
+    std::vector<double> share;  ///< of each point in its texel's mean; they sum to 1
 };
 
 /// Row y of a map of that layout and extent.

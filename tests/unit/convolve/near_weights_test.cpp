@@ -1,6 +1,8 @@
 #include "convolve/near_weights.h"
 
+#include "convolve/edges.h"
 #include "convolve/gauss.h"
+#include "convolve/lobe.h"
 #include "convolve/peaks.h"
 #include "panorama/layouts.h"
 
