@@ -63,6 +63,21 @@ void requireError(const ProbeToPrefilter& probe, const PrefilterResult& result, 
     throw Error(ExitCode::accuracy, text);
 }
 
+/// Says of which map the bound is the farthest above the quality's error, if of any.
+void noteError(Session& session, std::span<const PrefilterResult> results, Quality quality) {
+    const QualityRow& row = *std::ranges::find(kQualities, quality, &QualityRow::quality);
+    const auto worst = std::ranges::max_element(results, {}, &PrefilterResult::error_bound);
+    if (worst == results.end() || worst->error_bound <= row.max_error) return;
+    std::string which;
+    if (results.size() > 1) which = " of map " + std::to_string(worst - results.begin());
+    char text[160];
+    std::snprintf(text, sizeof text,
+                  "not proven: the error bound%s is %.3g (estimate %.2g), not %g; --max-error "
+                  "would refuse it",
+                  which.c_str(), worst->error_bound, worst->error_estimate, row.max_error);
+    session.note("--quality " + std::string(row.name), text);
+}
+
 double errorOf(const QualityOptions& quality) {
     return quality.max_error.value_or(optionsFor(quality.quality).max_error);
 }
@@ -151,6 +166,7 @@ std::vector<PrefilterResult> runPrefilter(Session& session, const ProbeToPrefilt
         if (quality.max_error) requireError(probe, results[i], *quality.max_error);
         maps.push_back(jsonOf(requests[i], results[i]));
     }
+    if (!quality.max_error && !options.reference) noteError(session, results, quality.quality);
     return results;
 }
 

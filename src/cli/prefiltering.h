@@ -40,7 +40,8 @@ ProbeToPrefilter toPrefilter(Session& session, Panorama&& probe,
 PrefilterRequest asSeenByCoefficients(int order);
 
 /// Convolves the probe and puts each result's error, band limit, peaks and seconds into the report
-/// under `results`. Throws Error (accuracy) when an asked `--max-error` is not kept.
+/// under `results`. Throws Error (accuracy) when an asked `--max-error` is not kept; of a quality's
+/// error that is a note.
 std::vector<PrefilterResult> runPrefilter(Session& session, const ProbeToPrefilter& probe,
                                           std::span<const PrefilterRequest> requests,
                                           const QualityOptions& quality);

@@ -1,6 +1,7 @@
 #include "image/write.h"
 
 #include "core/error.h"
+#include "core/parallel.h"
 #include "image/cube_container.h"
 #include "image/exr.h"
 #include "image/oiio.h"
@@ -87,12 +88,11 @@ WriteLosses writeCubeMap(OutputSet& outputs, const std::string& path,
                                             : writeKtx2(file, levels, options.type);
 }
 
-WriteLosses writeImage(OutputSet& outputs, const std::string& path, const Image& image,
-                       const WriteOptions& options) {
-    if (image.width < 1 || image.height < 1 || (image.channels != 3 && image.channels != 4)) {
-        throw std::logic_error("writeImage takes RGB or RGBA pixels");
-    }
-    const std::string format = formatOf(path, options);
+namespace {
+
+/// Throws where the file's format cannot take the options.
+void requireFittingOptions(const std::string& path, const std::string& format,
+                           const WriteOptions& options) {
     if (isCubeContainer(path, options)) {
         throw Error(ExitCode::usage, path + ": " + format +
                                          " files hold cube maps, not this image; write another "
@@ -108,11 +108,50 @@ WriteLosses writeImage(OutputSet& outputs, const std::string& path, const Image&
         throw Error(ExitCode::usage, path + ": only OpenEXR files have further channels; write "
                                             ".exr");
     }
-    OutputFile& file = outputs.add(path);
+}
+
+WriteLosses writeTo(OutputFile& file, const std::string& format, const Image& image,
+                    const WriteOptions& options) {
+    if (image.width < 1 || image.height < 1 || (image.channels != 3 && image.channels != 4)) {
+        throw std::logic_error("writeImage takes RGB or RGBA pixels");
+    }
     if (format == "exr") return writeExr(file, image, options);
     if (isRadiance(format)) return writeRadiance(file, image, options.threads);
     if (format == "png") return writePng(file, image, {}, options.threads);
     return writeOiio(file, image, format, options);
+}
+
+} // namespace
+
+WriteLosses writeImage(OutputSet& outputs, const std::string& path, const Image& image,
+                       const WriteOptions& options) {
+    const std::string format = formatOf(path, options);
+    requireFittingOptions(path, format, options);
+    return writeTo(outputs.add(path), format, image, options);
+}
+
+WriteLosses writeImages(OutputSet& outputs, std::span<const std::string> paths,
+                        const std::function<Image(std::size_t)>& imageOf,
+                        const WriteOptions& options) {
+    std::vector<OutputFile*> files;
+    std::vector<std::string> formats;
+    for (const std::string& path : paths) {
+        formats.push_back(formatOf(path, options));
+        requireFittingOptions(path, formats.back(), options);
+        files.push_back(&outputs.add(path));
+    }
+    std::vector<WriteLosses> losses(paths.size());
+    const auto write = [&](std::size_t k) {
+        losses[k] = writeTo(*files[k], formats[k], imageOf(k), options);
+    };
+    // The first one alone: libraries are loaded and set up with it.
+    if (!files.empty()) write(0);
+    if (files.size() > 1)
+        parallelFor(files.size() - 1, options.threads, [&](std::size_t k) { write(k + 1); });
+    WriteLosses total;
+    for (const WriteLosses& l : losses)
+        total += l;
+    return total;
 }
 
 std::vector<std::string> describeLosses(const WriteLosses& losses, const std::string& path,

@@ -6,6 +6,7 @@
 #include "image/output_set.h"
 
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -56,6 +57,12 @@ struct WriteLosses {
 /// Error(ExitCode::missing) if OpenImageIO is needed and not there.
 WriteLosses writeImage(OutputSet& outputs, const std::string& path, const Image& image,
                        const WriteOptions& options = {});
+
+/// Writes image k, which `imageOf(k)` makes, to `paths[k]`, some of them at the same time: small
+/// ones take longer to open than to write. Throws as writeImage does, of the first that fails.
+WriteLosses writeImages(OutputSet& outputs, std::span<const std::string> paths,
+                        const std::function<Image(std::size_t)>& imageOf,
+                        const WriteOptions& options = {});
 
 /// Throws what writeImage would throw, whatever the image, for a file whose format nothing says,
 /// nothing writes or has no compression to choose: before the image is made.

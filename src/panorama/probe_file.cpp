@@ -184,15 +184,15 @@ WriteLosses writeProbe(OutputSet& outputs, const std::string& path, const Panora
     }
     const Image& image = panorama.image;
     const int edge = image.width;
-    WriteLosses losses;
-    int face = 0;
-    for (const std::string& name : probeFileNames(path, Layout::faces)) {
-        Image one(edge, edge);
-        std::copy_n(image.row(face * edge), one.pixels.size(), one.pixels.begin());
-        losses += writeImage(outputs, name, one, how);
-        ++face;
-    }
-    return losses;
+    return writeImages(
+        outputs, probeFileNames(path, Layout::faces),
+        [&](std::size_t face) {
+            Image one(edge, edge);
+            std::copy_n(image.row(static_cast<int>(face) * edge), one.pixels.size(),
+                        one.pixels.begin());
+            return one;
+        },
+        how);
 }
 
 } // namespace ibl

@@ -270,6 +270,24 @@ TEST(Diffuse, MaxErrorIsKeptOrRefused) {
     EXPECT_LE(map.at("error_estimate").get<double>(), 1e-5);
 }
 
+TEST(Specular, AnErrorThatTheQualityDoesNotProveIsTold) {
+    const Scratch scratch;
+    ASSERT_EQ(runTool({"convert", "builtin:sky", "--to", "vcross", "--size", "8", "-o", "c.exr"},
+                      scratch.path())
+                  .exit_code,
+              0);
+    const auto told = [&](const std::string& exponent) {
+        const ToolResult result =
+            runTool({"specular", "c.exr", "--from", "vcross", "--kernel", "phong", "--exponent",
+                     exponent, "--quality", "high", "--size", "2", "-o", "s.exr"},
+                    scratch.path());
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+        return result.err;
+    };
+    EXPECT_EQ(told("40"), "");
+    EXPECT_NE(told("40000").find("--quality high: not proven"), std::string::npos);
+}
+
 TEST(Specular, WhatNarrowLobesCannotKeepIsRefusedBeforeTheWork) {
     const Scratch scratch;
     const auto start = std::chrono::steady_clock::now();
