@@ -158,10 +158,11 @@ Image nearMap(const Panorama& probe, const Panorama& areas, const NearField& fie
     first.push_back(texels.size());
     Panorama result{request.layout, Image(size.x, size.y)};
     std::ranges::fill(result.image.pixels, 0.0f);
-    constexpr std::size_t kAtOnce = 16;
     std::atomic<std::size_t> finished = 0;
     const std::size_t groups = first.size() - 1, rows = static_cast<std::size_t>(map.height);
-    parallelForRuns(groups, kAtOnce, threads, [&](std::size_t begin, std::size_t end) {
+    // Of a map of few texels each may take seconds.
+    const std::size_t at_once = std::clamp<std::size_t>(groups / 64, 1, 16);
+    parallelForRuns(groups, at_once, threads, [&](std::size_t begin, std::size_t end) {
         for (std::size_t group = begin; group < end; ++group) {
             const int key = texels[first[group]].key;
             const NearWeights weights =

@@ -154,6 +154,45 @@ CubeGrid cubeGrid(int edge, bool border_rule) {
     return grid;
 }
 
+std::array<OctantPlace, 32> octantPlaces(int rows) {
+    using enum CubeLatlongOverlaps::Axis;
+    constexpr std::array<int, 4> kSide{4, 0, 5, 1}; // of the axes
+    std::array<OctantPlace, 32> places;
+    auto next = places.begin();
+    for (const bool down : {false, true}) { // as in forEachOverlap
+        for (const bool right : {false, true}) {
+            const int from_equator = down ? rows / 2 : (rows - 1) / 2;
+            for (int axis = 0; axis < 4; ++axis) {
+                const int face = kSide[static_cast<std::size_t>(axis)];
+                *next++ = {false, axis, !right, face, right, down, true, from_equator, down};
+            }
+            for (const int face : {2, 3}) {
+                const bool north = face == 2, plus_z = down == north;
+                const int from_pole = north ? 0 : rows - 1;
+                *next++ = {true,
+                           right ? kPlusX : kMinusX,
+                           right == plus_z,
+                           face,
+                           right,
+                           down,
+                           true,
+                           from_pole,
+                           north};
+                *next++ = {true,
+                           plus_z ? kPlusZ : kMinusZ,
+                           right != plus_z,
+                           face,
+                           right,
+                           down,
+                           false,
+                           from_pole,
+                           north};
+            }
+        }
+    }
+    return places;
+}
+
 CubeLatlongOverlaps cubeLatlongOverlaps(const CubeGrid& cube, const LatlongGrid& latlong,
                                         int threads) {
     CubeLatlongOverlaps result;

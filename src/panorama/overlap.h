@@ -6,7 +6,7 @@
 // radiance of 1e-3 beside one of 1e9.
 #pragma once
 
-#include "panorama/conventions.h"
+#include "panorama/layouts.h"
 
 #include <array>
 #include <vector>
@@ -100,6 +100,29 @@ inline int fromMiddle(int edge, int i, std::array<FromMiddle, 2>& halves) {
     halves[1] = {0, false};
     return 2;
 }
+
+/// A part of the sphere that a table stands for: half of a wedge's side face above or below the
+/// equator, or a wedge's part of +Y or -Y.
+struct OctantPlace {
+    bool pole; ///< a table of `pole`, else of `side`
+    int axis;  ///< the wedge
+    bool higher;
+    int face;
+    bool right, down; ///< of the face's middle
+    bool a_along_i;   ///< cells' a counts columns of texels and b rows, else the reverse
+    int first_row;    ///< the lat-long's that the table's row 0 is
+    bool rows_down;   ///< and whether its rows run down from there
+
+    /// Texel of cell (a, b).
+    V2i texel(int edge, int a, int b) const {
+        const int i = a_along_i ? a : b, j = a_along_i ? b : a;
+        return {right ? edge / 2 + i : (edge - 1) / 2 - i,
+                down ? edge / 2 + j : (edge - 1) / 2 - j};
+    }
+};
+
+/// All of them, for a lat-long of that many rows.
+std::array<OctantPlace, 32> octantPlaces(int rows);
 
 /// Calls `use(x, y, area)` for every pixel that texel (i, j) of a face overlaps, perhaps in several
 /// parts, in a fixed order. The areas sum to the texel's solid angle.

@@ -90,46 +90,24 @@ struct AllOctants {
 };
 
 AllOctants octantsOf(const CubeLatlongOverlaps& overlaps, const LatlongPixels& pixels,
-                     const CubePlacement& place, Image& image) {
-    using enum CubeLatlongOverlaps::Axis;
-    const int edge = overlaps.edge, rows = overlaps.rows;
-    // `a_along_i`: cell (a, b) is a from the middle along i and b along j, otherwise the reverse.
-    const auto add = [&](std::array<OctantImages, 4>& tables, int axis, bool higher, int first_row,
-                         bool rows_down, int face, bool right, bool down, bool a_along_i) {
-        const CubeLatlongOverlaps::Wedge& wedge = overlaps.wedges[axis][higher];
-        OctantImages& octants = tables[wedge.table];
+                     const CubePlacement& cube, Image& image) {
+    AllOctants all;
+    for (const OctantPlace& place : octantPlaces(overlaps.rows)) {
+        const CubeLatlongOverlaps::Wedge& wedge = overlaps.wedges[place.axis][place.higher];
+        OctantImages& octants = (place.pole ? all.pole : all.side)[wedge.table];
         OctantImage& octant = octants.images[octants.count++];
         for (int n = 0; n < overlaps.columns / 8 + 3; ++n)
             octant.column.push_back(std::ptrdiff_t{3} * overlaps.column(wedge, n));
-        octant.row = pixels.row(first_row);
-        octant.row_step = std::ptrdiff_t{3} * pixels.columns() * (rows_down ? 1 : -1);
-        const auto texel = [&](int i, int j) {
-            const V2i at = place.pixel(face, right ? edge / 2 + i : (edge - 1) / 2 - i,
-                                       down ? edge / 2 + j : (edge - 1) / 2 - j);
+        octant.row = pixels.row(place.first_row);
+        octant.row_step = std::ptrdiff_t{3} * pixels.columns() * (place.rows_down ? 1 : -1);
+        const auto texel = [&](int a, int b) {
+            const V2i in_face = place.texel(overlaps.edge, a, b);
+            const V2i at = cube.pixel(place.face, in_face.x, in_face.y);
             return (std::ptrdiff_t{at.y} * image.width + at.x) * 3;
         };
         octant.texel = image.pixels.data() + texel(0, 0);
-        const std::ptrdiff_t along_i = texel(1, 0) - texel(0, 0);
-        const std::ptrdiff_t along_j = texel(0, 1) - texel(0, 0);
-        octant.a_step = a_along_i ? along_i : along_j;
-        octant.b_step = a_along_i ? along_j : along_i;
-    };
-    AllOctants all;
-    constexpr std::array<int, 4> kSide{4, 0, 5, 1}; // of the axes
-    for (const bool down : {false, true}) {         // as in forEachOverlap
-        for (const bool right : {false, true}) {
-            for (int axis = 0; axis < 4; ++axis)
-                add(all.side, axis, !right, down ? rows / 2 : (rows - 1) / 2, down, kSide[axis],
-                    right, down, true);
-            for (const int face : {2, 3}) {
-                const bool plus_z = down == (face == 2);
-                const int first_row = face == 2 ? 0 : rows - 1;
-                add(all.pole, right ? kPlusX : kMinusX, right == plus_z, first_row, face == 2, face,
-                    right, down, true);
-                add(all.pole, plus_z ? kPlusZ : kMinusZ, right != plus_z, first_row, face == 2,
-                    face, right, down, false);
-            }
-        }
+        octant.a_step = texel(1, 0) - texel(0, 0);
+        octant.b_step = texel(0, 1) - texel(0, 0);
     }
     return all;
 }

@@ -36,52 +36,17 @@ CubeLatlongRows byRows(const CubeLatlongOverlaps& overlaps);
 template <class Use>
 void forEachOverlapInRow(const CubeLatlongOverlaps& overlaps, const CubeLatlongRows& by_rows, int y,
                          Use&& use) {
-    using enum CubeLatlongOverlaps::Axis;
-    const int edge = overlaps.edge, rows = overlaps.rows;
-    const auto texel = [edge](int cell, bool positive) {
-        return positive ? edge / 2 + cell : (edge - 1) / 2 - cell;
-    };
-    // `place` gives a cell's texel.
-    const auto visit = [&](const std::array<OctantRows, 4>& tables, int axis, bool higher, int row,
-                           int face, double down, auto place) {
-        const CubeLatlongOverlaps::Wedge& wedge = overlaps.wedges[axis][higher];
-        const OctantRows& table = tables[wedge.table];
-        if (row + 1 >= static_cast<int>(table.begin.size())) return;
+    for (const OctantPlace& place : octantPlaces(overlaps.rows)) {
+        const CubeLatlongOverlaps::Wedge& wedge = overlaps.wedges[place.axis][place.higher];
+        const OctantRows& table = (place.pole ? by_rows.pole : by_rows.side)[wedge.table];
+        const int row = place.rows_down ? y - place.first_row : place.first_row - y;
+        if (row < 0 || row + 1 >= static_cast<int>(table.begin.size())) continue;
         for (int k = table.begin[row]; k < table.begin[row + 1]; ++k) {
             const RowOverlap& part = table.overlaps[k];
-            const auto [i, j] = place(part.a, part.b);
-            use(face, i, j, overlaps.column(wedge, part.column), part.area,
-                wedge.step * static_cast<double>(part.across), down * part.away);
-        }
-    };
-    constexpr std::array<int, 4> kSide{4, 0, 5, 1}; // of the axes
-    for (const bool down : {false, true}) {         // as in forEachOverlap
-        const int row = down ? y - rows / 2 : (rows - 1) / 2 - y;
-        if (row < 0) continue;
-        for (int axis = 0; axis < 4; ++axis) {
-            for (const bool right : {false, true}) {
-                visit(by_rows.side, axis, !right, row, kSide[axis], down ? 1 : -1,
-                      [&](int a, int b) {
-                          return std::array<int, 2>{texel(a, right), texel(b, down)};
-                      });
-            }
-        }
-    }
-    for (const int face : {2, 3}) {
-        const int row = face == 2 ? y : rows - 1 - y;
-        const double away = face == 2 ? 1 : -1; // from the pole is down
-        for (const bool plus_x : {false, true}) {
-            for (const bool plus_z : {false, true}) {
-                const bool down = plus_z == (face == 2);
-                visit(by_rows.pole, plus_x ? kPlusX : kMinusX, plus_x == plus_z, row, face, away,
-                      [&](int a, int b) {
-                          return std::array<int, 2>{texel(a, plus_x), texel(b, down)};
-                      });
-                visit(by_rows.pole, plus_z ? kPlusZ : kMinusZ, plus_x != plus_z, row, face, away,
-                      [&](int a, int b) {
-                          return std::array<int, 2>{texel(b, plus_x), texel(a, down)};
-                      });
-            }
+            const V2i at = place.texel(overlaps.edge, part.a, part.b);
+            use(place.face, at.x, at.y, overlaps.column(wedge, part.column), part.area,
+                wedge.step * static_cast<double>(part.across),
+                (place.rows_down ? 1 : -1) * static_cast<double>(part.away));
         }
     }
 }
