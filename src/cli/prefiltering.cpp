@@ -48,18 +48,26 @@ nlohmann::ordered_json jsonOf(const PrefilterRequest& request, const PrefilterRe
     return json;
 }
 
-void requireError(const ProbeToPrefilter& probe, const PrefilterResult& result, double asked) {
+/// Which map, where there are several.
+std::string whichOf(std::span<const PrefilterResult> results, std::size_t i) {
+    return results.size() > 1 ? " of map " + std::to_string(i) : "";
+}
+
+/// `which` as whichOf gives it.
+void requireError(const ProbeToPrefilter& probe, const PrefilterResult& result,
+                  const std::string& which, double asked) {
     if (result.error_bound <= asked) return;
     const std::string read =
         probe.source ? "read into " + std::to_string(probe.latlong.image.height) + " rows and "
                      : "";
-    char text[280];
+    char text[320];
     std::snprintf(
         text, sizeof text,
         "--max-error %g cannot be met: %swith harmonics up to degree %d and %d bright pixels "
-        "apart the bound of the relative RMSE is %.2g (estimate %.2g); allow a larger error%s",
-        asked, read.c_str(), result.band_limit, result.peaks_split, result.error_bound,
-        result.error_estimate, probe.source ? "" : ", or use --quality reference");
+        "apart the bound of the relative RMSE%s is %.3g (estimate %.2g); allow a larger error%s",
+        asked, read.c_str(), result.band_limit, result.peaks_split, which.c_str(),
+        result.error_bound, result.error_estimate,
+        probe.source ? "" : ", or use --quality reference");
     throw Error(ExitCode::accuracy, text);
 }
 
@@ -68,8 +76,7 @@ void noteError(Session& session, std::span<const PrefilterResult> results, Quali
     const QualityRow& row = *std::ranges::find(kQualities, quality, &QualityRow::quality);
     const auto worst = std::ranges::max_element(results, {}, &PrefilterResult::error_bound);
     if (worst == results.end() || worst->error_bound <= row.max_error) return;
-    std::string which;
-    if (results.size() > 1) which = " of map " + std::to_string(worst - results.begin());
+    const std::string which = whichOf(results, worst - results.begin());
     char text[160];
     std::snprintf(text, sizeof text,
                   "not proven: the error bound%s is %.3g (estimate %.2g), not %g; --max-error "
@@ -163,7 +170,8 @@ std::vector<PrefilterResult> runPrefilter(Session& session, const ProbeToPrefilt
         session.stage("convolve", [&] { return prefilter(probe.latlong, requests, options); });
     auto& maps = session.results()["maps"] = nlohmann::ordered_json::array();
     for (std::size_t i = 0; i < results.size(); ++i) {
-        if (quality.max_error) requireError(probe, results[i], *quality.max_error);
+        if (quality.max_error)
+            requireError(probe, results[i], whichOf(results, i), *quality.max_error);
         maps.push_back(jsonOf(requests[i], results[i]));
     }
     if (!quality.max_error && !options.reference) noteError(session, results, quality.quality);

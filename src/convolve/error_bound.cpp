@@ -58,15 +58,18 @@ SpectrumError spectrumError(const std::vector<double>& k, const std::vector<doub
 }
 
 double roomFor(std::size_t texels) {
-    return 1 + 4 / std::sqrt(static_cast<double>(texels));
+    return 1 + 8 / std::sqrt(static_cast<double>(texels));
 }
 
-RelativeError relativeError(const SpectrumError& error, double size, std::size_t texels) {
+RelativeError relativeError(const SpectrumError& error, double size, std::size_t texels,
+                            const WorstTexels& worst) {
     if (size <= 0) return {0, 0};
-    const double over_sphere = error.bound * roomFor(texels);
-    const double at_points = error.pointwise * std::sqrt(4 * kPi);
+    const double at_points = error.pointwise * std::sqrt(4 * kPi), root = std::sqrt(worst.share);
+    const double at_worst = std::min(at_points, worst.times * error.bound);
+    const double over_sphere = std::hypot(error.bound * roomFor(texels), root * at_worst);
+    const double likely = error.estimate * std::hypot(1, root * std::min(worst.times, kRingTimes));
     return {std::hypot(std::min(over_sphere, at_points) / size, 4 * kFloatRounding),
-            relative(error.estimate, size)};
+            relative(likely, size)};
 }
 
 double relative(double norm, double size) {

@@ -84,9 +84,9 @@ void checkLobe(const Lobe& lobe) {
     if (row.parameter == KernelParameter::none) return;
     if (lobe.parameter >= row.least && lobe.parameter <= row.most) return;
     char text[160];
-    std::snprintf(text, sizeof text, "%s: not in [%g, %g], which %s takes; give a value in it",
-                  row.parameter == KernelParameter::roughness ? "roughness" : "exponent", row.least,
-                  row.most, std::string(row.name).c_str());
+    std::snprintf(text, sizeof text, "--%s %g is not in [%g, %g], which %s takes; give one in it",
+                  row.parameter == KernelParameter::roughness ? "roughness" : "exponent",
+                  lobe.parameter, row.least, row.most, std::string(row.name).c_str());
     throw Error(ExitCode::usage, text);
 }
 
@@ -187,6 +187,10 @@ std::optional<RationalLobe> rationalLobe(const Lobe& lobe) {
     if (lobe.kernel != Kernel::ggx) return std::nullopt;
     const double a2 = alphaOf(lobe) * alphaOf(lobe);
     return RationalLobe{a2 / kPi, a2};
+}
+
+bool endsInStep(const Lobe& lobe) {
+    return lobe.kernel == Kernel::phong && lobe.parameter < 1;
 }
 
 double lobeReach(const Lobe& lobe) {

@@ -103,6 +103,10 @@ struct RationalLobe {
 /// Nothing for the other kernels.
 std::optional<RationalLobe> rationalLobe(const Lobe& lobe);
 
+/// Whether the lobe ends at its horizon in a step, or in one that is as steep there: Phong of an
+/// exponent below 1.
+bool endsInStep(const Lobe& lobe);
+
 /// Angle (radians) beyond which lies less than 1e-17 of the integral: at most pi / 2.
 double lobeReach(const Lobe& lobe);
 

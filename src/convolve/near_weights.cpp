@@ -279,7 +279,8 @@ const NearRules& nearRules(double max_error) {
 
 NearField makeNearField(const NearKernel& kernel, const NearRules& rules, int probe_width,
                         int probe_height) {
-    const bool is_ring = kernel.lobe().kernel == Kernel::charlie;
+    // What ends in a step has a thin ring there.
+    const bool is_ring = kernel.lobe().kernel == Kernel::charlie || endsInStep(kernel.lobe());
     const double variation = lobeVariation(kernel.lobe());
     const double m = kernel.mass, reach = kernel.reach;
     const double least = (is_ring ? 1e-2 : 1e-4) * kernel.width; // nothing changes within a ring

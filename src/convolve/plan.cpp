@@ -35,8 +35,8 @@ struct Costs {
     static constexpr double kPeakOutlines = 1e5; ///< a peak and a texel (peak_map.h)
 };
 
-/// Outweighs any cost: a lobe whose error cannot be kept within kMostDegree.
-constexpr double kUnmet = 1e15;
+/// What half the error is worth where the asked one cannot be kept within kMostDegree.
+constexpr double kUnmet = 3e9;
 
 /// Whether what harmonics cannot hold of a lobe is its core, not its horizon.
 bool isNarrow(const Lobe& lobe) {
@@ -47,17 +47,17 @@ int mostDegree(const Lobe& lobe) {
     return isNarrow(lobe) ? kMostDegreeOfNarrow : kMostDegree;
 }
 
-/// Cost of the plan's harmonic lobes when each needs degree degrees[i] and `peaks` are split from a
-/// probe whose pixels are `pixel` radians wide.
-double costOf(const std::vector<int>& degrees, std::span<const PrefilterRequest> requests,
-              int peaks, double pixel) {
+/// Cost of the plan's harmonic lobes when each needs degree degrees[i], or is `over[i]` times off
+/// what is allowed, and `peaks` are split from a probe whose pixels are `pixel` radians wide.
+double costOf(const std::vector<int>& degrees, const std::vector<double>& over,
+              std::span<const PrefilterRequest> requests, int peaks, double pixel) {
     const auto cube = [](double d) { return d * d * d; };
     double cost = 0;
     int most = 0;
     for (std::size_t i = 0; i < degrees.size(); ++i) {
         if (degrees[i] < 0) continue;
         const double d = degrees[i];
-        if (d > mostDegree(requests[i].lobe)) cost += kUnmet;
+        if (d > mostDegree(requests[i].lobe)) cost += kUnmet * (1 + std::log2(over[i]));
         cost += Costs::kLegendre * cube(d) + Costs::kGrid * d * d;
         const Footprint footprint =
             footprintOf(requests[i].lobe, texelAngle(requests[i]), kAnyDegree);
@@ -143,13 +143,16 @@ Plan planTogether(const ProbeStatistics& probe, std::span<const PrefilterRequest
         const double threshold = peakThreshold(probe, peaks);
         const std::vector<double> energy{clampedEnergy(probe, threshold)};
         std::vector<int> degrees(requests.size(), -1);
+        std::vector<double> over(requests.size(), 1);
         for (std::size_t i = 0; i < requests.size(); ++i) {
             if (plan.lobes[i].method == Method::area) continue;
             const int most = mostDegree(requests[i].lobe);
             degrees[i] = leastDegree(plan.lobes[i].k, most, allowed[i], energy);
             if (degrees[i] > most && isNarrow(requests[i].lobe)) degrees[i] = -1;
+            if (degrees[i] > most)
+                over[i] = tailMaximum(plan.lobes[i].k)[most] * std::sqrt(energy[0]) / allowed[i];
         }
-        const double cost = costOf(degrees, requests, peaks, 2 * kPi / probe_width);
+        const double cost = costOf(degrees, over, requests, peaks, 2 * kPi / probe_width);
         if (cost >= best) continue;
         best = cost;
         chosen = degrees;

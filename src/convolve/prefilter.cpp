@@ -22,6 +22,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -181,6 +182,13 @@ PrefilterResult directSum(const Engine& engine, const PrefilterRequest& request,
     return result;
 }
 
+WorstTexels worstTexels(const PrefilterRequest& request) {
+    if (endsInStep(request.lobe))
+        return {shareAlongEdges(request), std::numeric_limits<double>::infinity()};
+    if (request.lobe.kernel == Kernel::charlie) return {shareAlongEdges(request), kRingTimes};
+    return {};
+}
+
 PrefilterResult byHarmonics(const Engine& engine, const PrefilterRequest& request,
                             const LobePlan& lobe, double max_error, int threads) {
     const Stopwatch watch;
@@ -226,7 +234,7 @@ PrefilterResult byHarmonics(const Engine& engine, const PrefilterRequest& reques
     result.peaks_split = static_cast<int>(engine.peaks.size());
     const SpectrumError error = spectrumError(lobe.k, engine.power, engine.clamped_energy, degree);
     const RelativeError relative_error =
-        relativeError(error, norm.root() * engine.probe.scale, norm.texels());
+        relativeError(error, norm.root() * engine.probe.scale, norm.texels(), worstTexels(request));
     const bool by_points = norm.root() > 0 && (footprint.samples > 1 || isBallMap(request.layout));
     const double within = by_points ? kFootprintError : 0;
     result.error_bound = std::hypot(relative_error.bound + within, outlines_error);

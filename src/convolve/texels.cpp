@@ -65,7 +65,7 @@ double samplesOfFewTexels(double texel) {
 /// smooth ones need.
 Footprint footprintFor(double lobe_diameter, double texel, int degree, double extent,
                        double density) {
-    constexpr double kNone = 1e-6; // rounding, where a lobe is just two texels wide
+    constexpr double kNone = 0.01; // of what a field's curvature leaves that 1e-5 or less
     Footprint footprint{std::min(2 - lobe_diameter / extent, 1.0), 1, texel, lobe_diameter, degree};
     if (footprint.scale < kNone) footprint.scale = 0;
     if (footprint.scale > 0) {
@@ -196,7 +196,7 @@ Footprint footprintOf(const Lobe& lobe, double texel, int degree) {
 }
 
 double leastOutline(const Lobe& lobe) {
-    return lobe.kernel == Kernel::charlie ? 0.01 : 0.25;
+    return lobe.kernel == Kernel::charlie || endsInStep(lobe) ? 0.01 : 0.25;
 }
 
 bool isCrossedByHorizons(const Lobe& lobe, const Footprint& of_map) {
@@ -227,6 +227,22 @@ double texelCount(const PrefilterRequest& request) {
     if (isSquareMap(request.layout)) return n * n;
     const bool cube = isCubeFamily(request.layout) || request.layout == Layout::exrCube;
     return cube ? 6 * n * n : 2 * n * n;
+}
+
+double shareAlongEdges(const PrefilterRequest& request) {
+    constexpr double kOn = 1e-9;
+    const V2i extent = layoutExtent(request.layout, request.size);
+    double along = 0, all = 0;
+    for (int y = 0; y < extent.y; ++y) {
+        for (int x = 0; x < extent.x; ++x) {
+            const auto d = texelDirection(request.layout, extent.x, extent.y, x + 0.5, y + 0.5);
+            if (!d) continue;
+            const double area = texelSolidAngle(request.layout, extent.x, extent.y, x, y);
+            all += area;
+            if (std::abs(d->y) < kOn || std::hypot(d->x, d->z) < kOn) along += area;
+        }
+    }
+    return along / all;
 }
 
 V3d texelPlace(const MapExtent& map, int x, int y, V2d offset) {

@@ -37,7 +37,8 @@ Footprint footprintOf(const Lobe& lobe, double texel, int degree);
 bool isCrossedByHorizons(const Lobe& lobe, const Footprint& of_map);
 
 /// Footprints shrunk below this of the texel's extent are taken at points, not by their outlines:
-/// of an outline's sums less would be left. Charlie's ring along the horizon needs more points.
+/// of an outline's sums less would be left. Charlie's ring along the horizon needs more points, and
+/// a step there (endsInStep) too.
 double leastOutline(const Lobe& lobe);
 
 /// Relative RMSE that a footprint's points leave, as measured for all layouts, 1 to 47 texels and
@@ -50,6 +51,11 @@ Footprint footprintOfTexel(const Footprint& of_map, Layout layout, int size, int
 
 /// The number of texels of the map that have a direction.
 double texelCount(const PrefilterRequest& request);
+
+/// The part of the map's solid angle whose texels look along the equator or at a pole: their
+/// horizons run along the edges of a lat-long's pixels, and lobes with a step or a ring there have
+/// their greatest errors.
+double shareAlongEdges(const PrefilterRequest& request);
 
 /// The texels of one row of a map that have a direction, and their points.
 struct RowPoints {
