@@ -58,7 +58,7 @@ SpectrumError spectrumError(const std::vector<double>& k, const std::vector<doub
 }
 
 double roomFor(std::size_t texels) {
-    return 1 + 8 / std::sqrt(static_cast<double>(texels));
+    return 1 + 4 / std::sqrt(static_cast<double>(texels));
 }
 
 RelativeError relativeError(const SpectrumError& error, double size, std::size_t texels,

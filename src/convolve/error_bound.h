@@ -55,9 +55,8 @@ struct SpectrumError {
 SpectrumError spectrumError(const std::vector<double>& k, const std::vector<double>& power,
                             double energy, int degree);
 
-/// By how much the mean square over that many texels may exceed the sphere's: eight standard
-/// deviations of a mean square of as many values, as a factor of its root. Four are not enough for
-/// rings (Charlie), whose error is the greatest where texels often lie (shareAlongEdges).
+/// By how much the mean square over that many texels may exceed the sphere's: four standard
+/// deviations of a mean square of as many values, as a factor of its root.
 double roomFor(std::size_t texels);
 
 /// Norms as relative RMSE over a map.
