@@ -174,10 +174,6 @@ double lobeScaleAt(const Lobe& lobe, double width, double t) {
 }
 
 double lobeScaleFrom(const Lobe& lobe, double width, double scale) {
-    if (lobe.kernel == Kernel::charlie) {
-        const double a2 = lobe.parameter * lobe.parameter;
-        return std::max(2 * scale, 2 * std::atan(0.5 * scale / a2));
-    }
     if (width >= scale) return 0;
     return lobe.kernel == Kernel::ggx ? 2 * scale : std::numeric_limits<double>::infinity();
 }

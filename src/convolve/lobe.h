@@ -91,7 +91,7 @@ double lobeWidth(const Lobe& lobe);
 double lobeScaleAt(const Lobe& lobe, double width, double t);
 
 /// Angle (radians) from which on that is `scale` or more, but for the horizon; infinite where it
-/// never is.
+/// never is. Not for Charlie.
 double lobeScaleFrom(const Lobe& lobe, double width, double scale);
 
 /// Lambert's and GGX's lobe in c = cos t >= 0: K(t) = factor c / (a2 + (1 - a2) (1 - c) / 2)^2.

@@ -125,15 +125,14 @@ struct CloserLook {
     std::size_t peak;
 };
 
-/// All peaks that 2 x 2 points do for, from `count` points, a multiple of kLanes. Returns the
-/// others.
+/// Adds all peaks that 2 x 2 points do for to the points from `begin` to `end`, a multiple of
+/// kLanes of them, and tells the others.
 IBL_MULTIVERSION
-std::vector<CloserLook> addSmoothPeaks(const std::vector<SmoothPeak>& peaks,
-                                       const RationalLobe& lobe, double norm, const V3d* direction,
-                                       std::size_t count, double* values) {
-    std::vector<CloserLook> others;
+void addSmoothPeaks(const std::vector<SmoothPeak>& peaks, const RationalLobe& lobe, double norm,
+                    const V3d* direction, std::size_t begin, std::size_t end, double* values,
+                    std::vector<CloserLook>& others) {
     const double factor = norm * lobe.factor, half = 0.5 * (1 - lobe.a2), a2 = lobe.a2;
-    for (std::size_t first = 0; first < count; first += kLanes) {
+    for (std::size_t first = begin; first < end; first += kLanes) {
         const V3d* d = direction + first;
         const Lanes x{d[0].x, d[1].x, d[2].x, d[3].x};
         const Lanes y{d[0].y, d[1].y, d[2].y, d[3].y};
@@ -164,7 +163,6 @@ std::vector<CloserLook> addSmoothPeaks(const std::vector<SmoothPeak>& peaks,
                 values[3 * (first + lane) + c] += sums[c][lane];
         }
     }
-    return others;
 }
 
 } // namespace
@@ -190,12 +188,17 @@ void addPeaks(const PeakSum& sum, const RowPoints& points, double* values) {
     const std::size_t count = points.u.size();
     std::size_t done = 0;
     if (const auto lobe = rationalLobe(sum.lobe)) {
-        done = count / kLanes * kLanes;
-        const std::vector<CloserLook> others =
-            addSmoothPeaks(sum.smooth, *lobe, sum.norm, points.direction.data(), done, values);
-        for (const CloserLook& other : others) {
-            for (int lane = 0; lane < kLanes; ++lane)
-                addPeak(sum, other.peak, points, other.first + lane, values);
+        constexpr std::size_t kAtOnce = 64 * kLanes; // all peaks may need a closer look
+        const std::size_t whole = count / kLanes * kLanes;
+        std::vector<CloserLook> others;
+        for (; done < whole; done = std::min(done + kAtOnce, whole)) {
+            others.clear();
+            addSmoothPeaks(sum.smooth, *lobe, sum.norm, points.direction.data(), done,
+                           std::min(done + kAtOnce, whole), values, others);
+            for (const CloserLook& other : others) {
+                for (int lane = 0; lane < kLanes; ++lane)
+                    addPeak(sum, other.peak, points, other.first + lane, values);
+            }
         }
     }
     for (std::size_t i = done; i < count; ++i) {

@@ -182,11 +182,11 @@ PrefilterResult directSum(const Engine& engine, const PrefilterRequest& request,
     return result;
 }
 
-WorstTexels worstTexels(const PrefilterRequest& request) {
-    if (endsInStep(request.lobe))
-        return {shareAlongEdges(request), std::numeric_limits<double>::infinity()};
-    if (request.lobe.kernel == Kernel::charlie) return {shareAlongEdges(request), kRingTimes};
-    return {};
+WorstTexels worstTexels(const PrefilterRequest& request, int threads) {
+    const bool is_ring = request.lobe.kernel == Kernel::charlie;
+    if (!is_ring && !endsInStep(request.lobe)) return {};
+    return {shareAlongEdges(request, threads),
+            is_ring ? kRingTimes : std::numeric_limits<double>::infinity()};
 }
 
 PrefilterResult byHarmonics(const Engine& engine, const PrefilterRequest& request,
@@ -233,8 +233,8 @@ PrefilterResult byHarmonics(const Engine& engine, const PrefilterRequest& reques
     result.band_limit = degree;
     result.peaks_split = static_cast<int>(engine.peaks.size());
     const SpectrumError error = spectrumError(lobe.k, engine.power, engine.clamped_energy, degree);
-    const RelativeError relative_error =
-        relativeError(error, norm.root() * engine.probe.scale, norm.texels(), worstTexels(request));
+    const RelativeError relative_error = relativeError(
+        error, norm.root() * engine.probe.scale, norm.texels(), worstTexels(request, threads));
     const bool by_points = norm.root() > 0 && (footprint.samples > 1 || isBallMap(request.layout));
     const double within = by_points ? kFootprintError : 0;
     result.error_bound = std::hypot(relative_error.bound + within, outlines_error);

@@ -3,12 +3,14 @@
 #include "convolve/cut_texels.h"
 #include "convolve/gauss.h"
 #include "convolve/peaks.h"
+#include "core/parallel.h"
 #include "panorama/conventions.h"
 #include "panorama/layouts.h"
 #include "panorama/square_maps.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 
 namespace ibl {
@@ -229,20 +231,19 @@ double texelCount(const PrefilterRequest& request) {
     return cube ? 6 * n * n : 2 * n * n;
 }
 
-double shareAlongEdges(const PrefilterRequest& request) {
+double shareAlongEdges(const PrefilterRequest& request, int threads) {
     constexpr double kOn = 1e-9;
     const V2i extent = layoutExtent(request.layout, request.size);
-    double along = 0, all = 0;
-    for (int y = 0; y < extent.y; ++y) {
+    std::vector<double> along(static_cast<std::size_t>(extent.y));
+    parallelFor(along.size(), threads, [&](std::size_t row) {
+        const int y = static_cast<int>(row);
         for (int x = 0; x < extent.x; ++x) {
             const auto d = texelDirection(request.layout, extent.x, extent.y, x + 0.5, y + 0.5);
-            if (!d) continue;
-            const double area = texelSolidAngle(request.layout, extent.x, extent.y, x, y);
-            all += area;
-            if (std::abs(d->y) < kOn || std::hypot(d->x, d->z) < kOn) along += area;
+            if (d && (std::abs(d->y) < kOn || std::hypot(d->x, d->z) < kOn))
+                along[row] += texelSolidAngle(request.layout, extent.x, extent.y, x, y);
         }
-    }
-    return along / all;
+    });
+    return std::accumulate(along.begin(), along.end(), 0.0) / (4 * kPi);
 }
 
 V3d texelPlace(const MapExtent& map, int x, int y, V2d offset) {

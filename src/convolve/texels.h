@@ -55,7 +55,7 @@ double texelCount(const PrefilterRequest& request);
 /// The part of the map's solid angle whose texels look along the equator or at a pole: their
 /// horizons run along the edges of a lat-long's pixels, and lobes with a step or a ring there have
 /// their greatest errors.
-double shareAlongEdges(const PrefilterRequest& request);
+double shareAlongEdges(const PrefilterRequest& request, int threads);
 
 /// The texels of one row of a map that have a direction, and their points.
 struct RowPoints {

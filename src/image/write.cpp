@@ -134,15 +134,13 @@ WriteLosses writeImages(OutputSet& outputs, std::span<const std::string> paths,
                         const std::function<Image(std::size_t)>& imageOf,
                         const WriteOptions& options) {
     std::vector<OutputFile*> files;
-    std::vector<std::string> formats;
     for (const std::string& path : paths) {
-        formats.push_back(formatOf(path, options));
-        requireFittingOptions(path, formats.back(), options);
+        requireFittingOptions(path, formatOf(path, options), options);
         files.push_back(&outputs.add(path));
     }
     std::vector<WriteLosses> losses(paths.size());
     const auto write = [&](std::size_t k) {
-        losses[k] = writeTo(*files[k], formats[k], imageOf(k), options);
+        losses[k] = writeTo(*files[k], formatOf(paths[k], options), imageOf(k), options);
     };
     // The first one alone: libraries are loaded and set up with it.
     if (!files.empty()) write(0);

@@ -66,22 +66,13 @@ void fillPoleRow(const OctantTable& table, const OctantImages& octants, int a, i
         fillCell(table, octants, a, b);
 }
 
-/// Radiance times area, and area.
-struct Sum {
-    V3d radiance{0, 0, 0};
-    double area = 0;
-};
-
 /// Texel (i, j) of a face that several octants share.
 void fillTexel(const CubeLatlongOverlaps& overlaps, const LatlongPixels& pixels, int face, int i,
                int j, float* texel) {
-    Sum sum;
-    forEachOverlap(overlaps, face, i, j, [&](int x, int y, double area) {
-        const float* p = pixels.at(x, y);
-        sum.radiance += V3d(p[0], p[1], p[2]) * area;
-        sum.area += area;
-    });
-    setPixel(texel, sum.radiance / sum.area);
+    AreaSum sum;
+    forEachOverlap(overlaps, face, i, j,
+                   [&](int x, int y, double area) { sum.add(pixels.at(x, y), area); });
+    setPixel(texel, sum.mean());
 }
 
 /// The octants of every table, of the side faces and of +-Y.

@@ -19,17 +19,6 @@ double texelPitch(double pitch_on_face, const V3d& direction) {
     return pitch_on_face * cosine * std::sqrt(cosine);
 }
 
-/// Radiance times area, and area.
-struct Sum {
-    V3d radiance{0, 0, 0};
-    double area = 0;
-
-    void add(const float* pixel, double part) {
-        radiance += V3d(pixel[0], pixel[1], pixel[2]) * part;
-        area += part;
-    }
-};
-
 } // namespace
 
 void latlongToCube(const Panorama& source, Panorama& result, Enlarging enlarging, int threads) {
@@ -101,7 +90,7 @@ void cubeToLatlong(const Panorama& source, Panorama& result, Enlarging enlarging
             storeRow(moments, y, result.image, *down);
             return;
         }
-        std::vector<Sum> sums(overlaps.edge > 0 ? grid.columns : 0);
+        std::vector<AreaSum> sums(overlaps.edge > 0 ? grid.columns : 0);
         if (!sums.empty()) {
             forEachOverlapInRow(
                 overlaps, by_rows, y,
@@ -112,7 +101,7 @@ void cubeToLatlong(const Panorama& source, Panorama& result, Enlarging enlarging
         }
         for (int x = 0; x < grid.columns; ++x) {
             if (enlarging == Enlarging::hold) {
-                setPixel(result.image.at(x, y), sums[x].radiance / sums[x].area);
+                setPixel(result.image.at(x, y), sums[x].mean());
                 continue;
             }
             const V3d& level = equator[static_cast<std::size_t>(x)];
@@ -120,7 +109,7 @@ void cubeToLatlong(const Panorama& source, Panorama& result, Enlarging enlarging
             const double share =
                 areaShare(row_pitch / texelPitch(pitch_on_face, direction), enlarging);
             V3d value(0);
-            if (share > 0) value += sums[x].radiance / sums[x].area * share;
+            if (share > 0) value += sums[x].mean() * share;
             if (share < 1) value += radianceAt(sampler, direction) * (1 - share);
             setPixel(result.image.at(x, y), value);
         }

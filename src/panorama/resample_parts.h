@@ -75,6 +75,18 @@ private:
     const Image* image_;
 };
 
+/// Radiance times area, and area.
+struct AreaSum {
+    V3d radiance{0, 0, 0};
+    double area = 0;
+
+    void add(const float* pixel, double part) {
+        radiance += V3d(pixel[0], pixel[1], pixel[2]) * part;
+        area += part;
+    }
+    V3d mean() const { return radiance / area; }
+};
+
 inline void setPixel(float* pixel, const V3d& value) {
     for (int c = 0; c < 3; ++c)
         pixel[c] = static_cast<float>(value[c]);

@@ -4,13 +4,13 @@
 #include "panorama/conventions.h"
 #include "panorama/layouts.h"
 #include "panorama/square_maps.h"
+#include "unit/panorama/probes.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <random>
 
 namespace ibl {
 namespace {
@@ -117,11 +117,7 @@ double errorToReference(const Image& probe, const PrefilterRequest& request, dou
 /// run along pixels' edges: more than a random texel's error. The reference, too, has to see the
 /// step (it was off by 1e-3 in maps of three rows).
 TEST(PrefilterLayouts, BoundsHoldWhereHorizonsRunAlongEdges) {
-    Image probe(64, 32);
-    std::mt19937 random(5);
-    std::uniform_real_distribution<float> value(0, 1);
-    for (float& p : probe.pixels)
-        p = value(random);
+    const Image probe = test::noise(Layout::latlong, 64, 32, 5).image;
     for (const PrefilterRequest request : {PrefilterRequest{{Kernel::phong, 0}, Layout::faces, 9},
                                            {{Kernel::phong, 0}, Layout::latlong, 3},
                                            {{Kernel::phong, 0.1}, Layout::latlong, 3},
