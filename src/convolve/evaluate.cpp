@@ -102,8 +102,11 @@ MapValues evaluateMap(const Harmonics& harmonics, const std::vector<double>& sca
                       int threads) {
     MapValues result;
     std::vector<double> u, v;
-    for (int y = 0; y < height; ++y) {
-        const RowPoints points = rowPoints(layout, width, height, y, footprint);
+    result.rows.resize(static_cast<std::size_t>(height));
+    parallelFor(result.rows.size(), threads, [&](std::size_t y) {
+        result.rows[y] = rowPoints(layout, width, height, static_cast<int>(y), footprint);
+    });
+    for (const RowPoints& points : result.rows) {
         result.first.push_back(u.size());
         u.insert(u.end(), points.u.begin(), points.u.end());
         v.insert(v.end(), points.v.begin(), points.v.end());

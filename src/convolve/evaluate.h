@@ -24,6 +24,7 @@ std::size_t mapPoints(Layout layout, const Image& map, const Footprint& footprin
 
 /// A field at all points of a map.
 struct MapValues {
+    std::vector<RowPoints> rows;
     std::vector<std::size_t> first; ///< point of each row
     std::vector<double> values;     ///< [point][channel]
 };

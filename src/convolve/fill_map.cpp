@@ -12,7 +12,9 @@ namespace {
 /// Fills row y of the map.
 void fillRow(const PrefilterRequest& request, const Footprint& footprint, const Ingredients& parts,
              int y, Image& map, MapNorm& norm) {
-    const RowPoints points = rowPoints(request.layout, map.width, map.height, y, footprint);
+    RowPoints own;
+    if (!parts.at_points) own = rowPoints(request.layout, map.width, map.height, y, footprint);
+    const RowPoints& points = parts.at_points ? parts.at_points->rows[y] : own;
     const std::size_t count = points.u.size();
     std::vector<double> values(3 * count, 0.0);
     if (parts.field) {

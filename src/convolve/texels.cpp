@@ -3,6 +3,7 @@
 #include "convolve/cut_texels.h"
 #include "convolve/gauss.h"
 #include "convolve/peaks.h"
+#include "convolve/row_geometry.h"
 #include "core/parallel.h"
 #include "panorama/conventions.h"
 #include "panorama/layouts.h"
@@ -97,21 +98,15 @@ void forParts(double from, double to, const std::vector<double>& kinks, const Ta
 /// rectangle in the image, so a product of Gauss rules has the highest order.
 void addTexel(Layout layout, int width, int height, int x, int y, const V3d& centre,
               double footprint_scale, const GaussRule& rule, RowPoints& points) {
-    const auto look = [&](const V3d& d) {
-        const V2d p = latlongPoint(d);
-        points.u.push_back(p.x);
-        points.v.push_back(p.y);
-        points.direction.push_back(polar(d));
-    };
     if (rule.nodes.size() == 1) {
-        look(centre);
+        points.direction.push_back(polar(centre));
         points.share.push_back(1);
         return;
     }
-    const std::size_t first = points.u.size();
+    const std::size_t first = points.share.size();
     double total = 0;
     const auto add = [&](const V3d& d, double area) {
-        look(d);
+        points.direction.push_back(polar(d));
         // At a pole that is a texel's centre the density is 0.
         points.share.push_back(area * std::max(1e-300, solidAngleDensity(layout, d)));
         total += points.share.back();
@@ -150,6 +145,14 @@ void addTexel(Layout layout, int width, int height, int x, int y, const V3d& cen
     }
     for (std::size_t i = first; i < points.share.size(); ++i)
         points.share[i] /= total;
+}
+
+/// Sets the lat-long points of the directions.
+void locate(RowPoints& points) {
+    points.u.resize(points.direction.size());
+    points.v.resize(points.direction.size());
+    latlongPoints(points.direction.data(), points.direction.size(), points.u.data(),
+                  points.v.data());
 }
 
 } // namespace
@@ -259,18 +262,27 @@ RowPoints texelPoints(const MapExtent& map, int x, int y, const Footprint& footp
     const V3d centre = directionAt(map.layout, map.width, map.height, {x + 0.5, y + 0.5});
     addTexel(map.layout, map.width, map.height, x, y, centre, footprint.scale,
              footprintRule(footprint.samples), points);
+    locate(points);
     return points;
 }
 
 RowPoints rowPoints(Layout layout, int width, int height, int y, const Footprint& footprint) {
     RowPoints points;
     const GaussRule rule = footprintRule(footprint.samples);
+    std::vector<double> of_face; // a texel's solid angle is the same however its face is turned
+    if (isCubeFamily(layout)) {
+        const int edge = layoutSize(layout, width, height).value();
+        of_face.resize(static_cast<std::size_t>(edge));
+        faceRowSolidAngles(edge, y % edge, of_face.data());
+    }
     for (int x = 0; x < width; ++x) {
         const auto centre = texelDirection(layout, width, height, x + 0.5, y + 0.5);
         if (!centre) continue;
         points.column.push_back(x);
-        points.solid_angle.push_back(texelSolidAngle(layout, width, height, x, y));
-        points.first.push_back(points.u.size());
+        points.solid_angle.push_back(of_face.empty()
+                                         ? texelSolidAngle(layout, width, height, x, y)
+                                         : of_face[static_cast<std::size_t>(x) % of_face.size()]);
+        points.first.push_back(points.direction.size());
         if (isBallMap(layout)) {
             const Footprint own = footprintOfTexel(footprint, layout, width, x, y);
             addTexel(layout, width, height, x, y, *centre, own.scale, footprintRule(own.samples),
@@ -279,7 +291,8 @@ RowPoints rowPoints(Layout layout, int width, int height, int y, const Footprint
             addTexel(layout, width, height, x, y, *centre, footprint.scale, rule, points);
         }
     }
-    points.first.push_back(points.u.size());
+    points.first.push_back(points.direction.size());
+    locate(points);
     return points;
 }
 
