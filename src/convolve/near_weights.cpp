@@ -24,12 +24,12 @@ constexpr NearRules kRules[] = {
     {12, 24, 8, 5e-4, 1e-4, 30, 1e-6},
 };
 
-/// The outline of the texel shrunk to `scale`.
-std::vector<Arc> outlineOf(const MapExtent& map, int x, int y, double scale) {
+/// The outline of the texel shrunk to `scale`, in pieces of about `longest` radians.
+std::vector<Arc> outlineOf(const MapExtent& map, int x, int y, double scale, double longest) {
     std::vector<Arc> outline;
     if (isBallMap(map.layout)) {
         for (const MapRectangle& own : ownRectangles(map.layout, map.width, x, y, scale))
-            addCutOutline(map.layout, own, kLongest, outline);
+            addCutOutline(map.layout, own, longest, outline);
         return outline;
     }
     const auto [low, high] = ownPart(map.layout, map.width, map.height, x, y);
@@ -44,7 +44,7 @@ std::vector<Arc> outlineOf(const MapExtent& map, int x, int y, double scale) {
         double from = 0;
         for (const double to : partsBetween(first[along], last[along],
                                             kinksAlong(map.layout, map.width, first[1 - along]))) {
-            addCurve(place, from, to, 1, kLongest, outline);
+            addCurve(place, from, to, 1, longest, outline);
             from = to;
         }
     }
@@ -70,11 +70,11 @@ std::vector<TexelPoint> pointsOf(const MapExtent& map, int x, int y, const Footp
 }
 
 /// The footprint of that scale; the whole sphere has no outline.
-Texel texelOf(const MapExtent& map, int x, int y, double scale) {
+Texel texelOf(const MapExtent& map, int x, int y, double scale, double longest = kLongest) {
     const auto [low, high] = ownPart(map.layout, map.width, map.height, x, y);
     Texel texel{texelPlace(map, x, y, (low + high) * (0.5 * scale)),
                 0,
-                outlineOf(map, x, y, scale),
+                outlineOf(map, x, y, scale, longest),
                 0,
                 pointsOf(map, x, y, {scale, scale > 0 ? 2 : 1}),
                 pointsOf(map, x, y, {scale, scale > 0 ? 3 : 1})};
@@ -278,7 +278,7 @@ const NearRules& nearRules(double max_error) {
 }
 
 NearField makeNearField(const NearKernel& kernel, const NearRules& rules, int probe_width,
-                        int probe_height) {
+                        int probe_height, int threads) {
     // What ends in a step has a thin ring there.
     const bool is_ring = kernel.lobe().kernel == Kernel::charlie || endsInStep(kernel.lobe());
     const double variation = lobeVariation(kernel.lobe());
@@ -328,11 +328,11 @@ NearField makeNearField(const NearKernel& kernel, const NearRules& rules, int pr
     const auto at_angle = [&](double t) { return phi(t * t); };
     return {kernel,
             rules,
-            RadialTable(value, x0, 4, constant, bits),
-            RadialTable(phi, x0, x1, zero, bits),
-            RadialTable(psi, x0, 4, constant, bits),
-            RadialTable(swirl, x0, 4, constant, bits),
-            RadialTable(outer_swirl, x0, x1, zero, bits),
+            RadialTable(value, x0, 4, constant, bits, threads),
+            RadialTable(phi, x0, x1, zero, bits, threads),
+            RadialTable(psi, x0, 4, constant, bits, threads),
+            RadialTable(swirl, x0, 4, constant, bits, threads),
+            RadialTable(outer_swirl, x0, x1, zero, bits, threads),
             EdgeTable(within, at_angle, std::min(kernel.width, rules.flat), reach, 6 * rules.flat,
                       rules.nodes),
             is_ring ? ring_from : 0,
@@ -379,17 +379,33 @@ NearWeights nearWeights(const NearField& field, const MapExtent& map, int x, int
 
 std::vector<double> peakMasses(const NearField& field, const MapExtent& map, int x, int y,
                                const Footprint& of_map, std::span<const Peak> peaks) {
+    // Of texels as large as the lobe its mean is smooth over a small pixel, unless it has a ring.
+    constexpr double kSmall = 0.1; // of the lobe's width: 2 x 2 points leave 1e-7
+    constexpr double kPiece = 0.08; // of the outline, radians: as an Arc is off by 1e-7
+    const double size = std::max(kPi / field.height, 2 * kPi / field.width);
+    const bool by_points = field.ring_room == 0 && size < kSmall * field.kernel.width;
     const Footprint footprint = footprintOfTexel(of_map, map.layout, map.width, x, y);
-    const Texel texel = texelOf(map, x, y, footprint.scale);
+    const Texel texel = texelOf(map, x, y, footprint.scale, by_points ? kPiece : kLongest);
     const Flow flow(field, map, x, y, footprint, texel, Potential::withArea);
     std::vector<double> masses;
     for (const Peak& peak : peaks) {
         const double area = latlongPixelSolidAngle(field.width, field.height, peak.row);
         double mass = field.kernel.mass * area / (4 * kPi);
-        // Without an outline the texel is the whole sphere.
-        if (!texel.outline.empty())
+        if (texel.outline.empty()) { // the whole sphere
+        } else if (by_points) {
+            const PixelPoints points =
+                pixelPoints(field.width, field.height, peak.column, peak.row, 2);
+            for (std::size_t i = 0; i < points.weight.size(); ++i) {
+                const V3d at(points.x[i], points.y[i], points.z[i]);
+                double from_texel = 0;
+                for (const Arc& e : texel.outline)
+                    from_texel += flowAcross(field, at, e);
+                mass += points.weight[i] * from_texel / texel.solid_angle;
+            }
+        } else {
             for (const Arc& f : pixelOutline(field.width, field.height, peak.column, peak.row))
                 mass += flow.across(f);
+        }
         masses.push_back(mass);
     }
     return masses;

@@ -78,7 +78,7 @@ inline double roomBesideRing(const NearField& field, double between, double half
 }
 
 NearField makeNearField(const NearKernel& kernel, const NearRules& rules, int probe_width,
-                        int probe_height);
+                        int probe_height, int threads);
 
 /// A texel is area * (its area-filtered value) + sum of weight * pixel.
 struct NearWeights {

@@ -14,7 +14,8 @@ Image peakMap(const std::vector<Peak>& peaks, double scale, int width, int heigh
     const MapExtent map{request.layout, size.x, size.y, texelAngle(request)};
     NearRules rules = nearRules(kPeakMapError);
     rules.nodes = 2; // what touches in a plane is not met here
-    const NearField field = makeNearField(NearKernel(request.lobe, 0, 0), rules, width, height);
+    const NearField field =
+        makeNearField(NearKernel(request.lobe, 0, 0), rules, width, height, threads);
     Image result(size.x, size.y);
     const std::size_t texels = static_cast<std::size_t>(size.x) * size.y;
     parallelFor(texels, threads, [&](std::size_t at) {

@@ -6,37 +6,30 @@
 #include "convolve/peaks.h"
 #include "convolve/texels.h"
 
+#include <array>
 #include <vector>
 
 namespace ibl {
 
-/// Gauss points over a pixel as polar directions.
-struct PixelPoints {
-    std::vector<V3d> directions;
-    std::vector<double> weights; ///< summing to the pixel's solid angle
+/// Points over a pixel, and for which places they do: those whose direction's cosine with the first
+/// point of the fewest is in [low, high].
+struct RangedPoints {
+    PixelPoints points;
+    double low, high;
 };
 
 /// Where a peak lies, and points in it.
 struct PeakRectangle {
     Rectangle edges;
-    double size; ///< the longer edge, radians
-    PixelPoints coarse, fine;
-};
-
-/// A peak where 2 x 2 points do: seen from directions whose cosine with the first of them is in
-/// [low, high], and from those below `none`, of which all of it lies beyond the horizon.
-struct SmoothPeak {
-    double x[4], y[4], z[4]; ///< of its points
-    double weight[4];
-    double low, high, none;
-    double excess[3];
+    double size;                       ///< the longer edge, radians
+    double none;                       ///< cosine below which all of it lies beyond the horizon
+    std::array<RangedPoints, 3> points; ///< from few to many
 };
 
 /// Peaks and the lobe that they are convolved with.
 struct PeakSum {
     std::vector<Peak> peaks;
     std::vector<PeakRectangle> rectangles;
-    std::vector<SmoothPeak> smooth; ///< of lobes that are a rational function of cos t, else none
     Lobe lobe;
     LobeMassBeyond mass_beyond;
     double width; ///< lobeWidth

@@ -1,5 +1,6 @@
 #include "convolve/peaks.h"
 
+#include "convolve/gauss.h"
 #include "convolve/probe_scale.h"
 #include "core/parallel.h"
 #include "panorama/conventions.h"
@@ -151,6 +152,31 @@ std::vector<Peak> splitPeaks(const ProbeStatistics& statistics, double threshold
         peaks.push_back(peak);
     }
     return peaks;
+}
+
+PixelPoints pixelPoints(int width, int height, int column, int row, int n) {
+    const GaussRule& rule = gaussRule(n);
+    PixelPoints points{};
+    std::vector<V2d> azimuths;
+    for (const double node : rule.nodes) {
+        const double psi = 2 * kPi * (column + 0.5 + 0.5 * node) / width;
+        azimuths.emplace_back(std::cos(psi), std::sin(psi));
+    }
+    double total = 0;
+    for (int b = 0; b < n; ++b) {
+        const double theta = kPi * (row + 0.5 + 0.5 * rule.nodes[b]) / height;
+        const double sine = std::sin(theta), cosine = std::cos(theta);
+        for (int a = 0; a < n; ++a) {
+            points.x.push_back(sine * azimuths[a].x);
+            points.y.push_back(sine * azimuths[a].y);
+            points.z.push_back(cosine);
+            points.weight.push_back(rule.weights[a] * rule.weights[b] * sine);
+            total += points.weight.back();
+        }
+    }
+    for (double& w : points.weight)
+        w *= latlongPixelSolidAngle(width, height, row) / total;
+    return points;
 }
 
 V3d polarDirection(double theta, double psi) {

@@ -52,6 +52,15 @@ struct Peak {
 
 std::vector<Peak> splitPeaks(const ProbeStatistics& statistics, double threshold);
 
+/// n x n Gauss points over a pixel, as polar directions.
+struct PixelPoints {
+    std::vector<double> x, y, z;
+    std::vector<double> weight; ///< summing to the pixel's solid angle
+};
+
+/// Gauss's in (psi, theta): in cos theta the pixels at the poles would not be smooth.
+PixelPoints pixelPoints(int width, int height, int column, int row, int n);
+
 /// The direction of colatitude theta and azimuth psi, with the pole along +Z.
 V3d polarDirection(double theta, double psi);
 

@@ -163,7 +163,7 @@ PrefilterResult directSum(const Engine& engine, const PrefilterRequest& request,
         const NearRules& rules = nearRules(0);
         const NearKernel whole(request.lobe, 0, 0);
         result.map.image = nearMap(engine.probe.panorama, areasFor(engine.probe, request.lobe),
-                                   makeNearField(whole, rules, probe.width, probe.height), request,
+                                   makeNearField(whole, rules, probe.width, probe.height, threads), request,
                                    footprint, threads, &progress);
         if (!engine.probe.negative)
             for (float& p : result.map.image.pixels)
@@ -261,7 +261,7 @@ PrefilterResult inTwoParts(const Engine& engine, const PrefilterRequest& request
     result.seconds_synthesis = watch.seconds();
     const Footprint near_footprint = footprintOf(request.lobe, texel, kAnyDegree);
     const NearRules& rules = nearRules(max_error);
-    const NearField near_field = makeNearField(split.near, rules, probe.width, probe.height);
+    const NearField near_field = makeNearField(split.near, rules, probe.width, probe.height, threads);
     const Image near = nearMap(engine.probe.panorama, areasFor(engine.probe, request.lobe),
                                near_field, request, near_footprint, threads);
     parts.map = &near;

@@ -15,10 +15,10 @@ namespace ibl {
 class RadialTable {
 public:
     /// Of `function` on [least, most]. Below that it counts as constant, beyond as `outside`, or
-    /// where there is none as constant too.
+    /// where there is none as constant too. `threads` make it, for large parts.
     enum class Beyond { zero, constant };
     RadialTable(const std::function<double(double x)>& function, double least, double most,
-                Beyond beyond, int part_bits = 5);
+                Beyond beyond, int part_bits, int threads);
 
     double operator()(double x) const {
         if (x >= most_) return outside_;

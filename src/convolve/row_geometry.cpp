@@ -28,8 +28,9 @@ void latlongPoints(const V3d* direction, std::size_t n, double* u, double* v) {
 
 IBL_MULTIVERSION
 void faceRowSolidAngles(int edge, int j, double* solid_angle) {
-    for (int i = 0; i < edge; ++i)
-        solid_angle[i] = cubeTexelSolidAngle(i, j, edge);
+    const double step = 2.0 / edge, t0 = j * step - 1, t1 = (j + 1) * step - 1;
+    for (int i = 0; i < edge; ++i) // i + 1 would be seen as the next i: no loop for vectors
+        solid_angle[i] = cubeRectangleSolidAngle(i * step - 1, (i + 1.0) * step - 1, t0, t1);
 }
 
 } // namespace ibl

@@ -275,6 +275,9 @@ RowPoints rowPoints(Layout layout, int width, int height, int y, const Footprint
         of_face.resize(static_cast<std::size_t>(edge));
         faceRowSolidAngles(edge, y % edge, of_face.data());
     }
+    const std::size_t at_most = width * rule.nodes.size() * rule.nodes.size();
+    points.direction.reserve(at_most);
+    points.share.reserve(at_most);
     for (int x = 0; x < width; ++x) {
         const auto centre = texelDirection(layout, width, height, x + 0.5, y + 0.5);
         if (!centre) continue;

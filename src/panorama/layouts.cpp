@@ -91,8 +91,8 @@ Turned turned(Layout layout, int face) {
 /// The face whose cell holds that point of the image, or -1.
 int faceAt(Layout layout, int edge, double x, double y) {
     const V2i faces = extentInFaces(layout);
-    const int column = std::clamp(static_cast<int>(std::floor(x / edge)), 0, faces.x - 1);
-    const int row = std::clamp(static_cast<int>(std::floor(y / edge)), 0, faces.y - 1);
+    const int column = std::clamp(static_cast<int>(x / edge), 0, faces.x - 1);
+    const int row = std::clamp(static_cast<int>(y / edge), 0, faces.y - 1);
     if (layout == Layout::strip) return column;
     if (faces.x == 1) return row;
     for (int face = 0; face < 6; ++face) {

@@ -226,7 +226,7 @@ TEST(Narrow, WeightsOfPixelsAreTheKernelsMeans) {
         const Lobe lobe{Kernel::ggx, roughness};
         const std::vector<double> k = zonalCoefficients(lobe, 576);
         const LobeSplit split = splitLobe(lobe, k, 512, 1e-5);
-        const NearField field = makeNearField(split.near, nearRules(1e-5), kWidth, kHeight);
+        const NearField field = makeNearField(split.near, nearRules(1e-5), kWidth, kHeight, 1);
         for (const int size : {64, 256}) { // footprints whole, and for 0.05 at 256 shrunk
             const MapExtent map{Layout::faces, size, 6 * size, 0.5 * kPi / size};
             const Footprint footprint = footprintOf(lobe, map.texel, kAnyDegree);

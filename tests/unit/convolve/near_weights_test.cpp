@@ -58,7 +58,7 @@ TEST(NearWeights, OfWideLobesAreTheMeansOfTheirValues) {
     for (const Case& c : cases) {
         const Lobe lobe{Kernel::phong, c.exponent};
         const NearKernel kernel(lobe, 0, 0);
-        const NearField field = makeNearField(kernel, nearRules(0), kWidth, kHeight);
+        const NearField field = makeNearField(kernel, nearRules(0), kWidth, kHeight, 1);
         const V2i extent = layoutExtent(c.layout, c.size);
         const MapExtent map{c.layout, extent.x, extent.y, texelAngle({lobe, c.layout, c.size})};
         const Footprint of_map = footprintOf(lobe, map.texel, kAnyDegree);
@@ -99,7 +99,7 @@ TEST(NearWeights, PeaksInTexelsThatAHorizonCrosses) {
         const bool thin = lobe.kernel == Kernel::charlie && lobe.parameter < 0.2;
         const GaussRule& rule = gaussRule(thin ? 30 : 8);
         const NearField field =
-            makeNearField(NearKernel(lobe, 0, 0), nearRules(1e-5), kWidth, kHeight);
+            makeNearField(NearKernel(lobe, 0, 0), nearRules(1e-5), kWidth, kHeight, 1);
         const LobeMassBeyond beyond(lobe);
         const auto q = [&](double h) { return -beyond(h); };
         const Disc disc{lobeReach(lobe), lobeVariation(lobe)};
@@ -140,7 +140,7 @@ TEST(NearWeights, PeaksInTexelsThatAHorizonCrosses) {
 TEST(NearWeights, FarPixelsAreAsByTheirEdges) {
     const Lobe lobe{Kernel::ggx, 0.9};
     const int width = 256, height = 128;
-    const NearField field = makeNearField(NearKernel(lobe, 0, 0), nearRules(0), width, height);
+    const NearField field = makeNearField(NearKernel(lobe, 0, 0), nearRules(0), width, height, 1);
     const MapExtent map{Layout::faces, 2, 12, texelAngle({lobe, Layout::faces, 2})};
     const Footprint footprint = footprintOf(lobe, map.texel, kAnyDegree);
     ASSERT_GT(footprint.scale, 0.05);
