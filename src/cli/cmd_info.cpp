@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <memory>
@@ -53,9 +54,12 @@ Json describe(const InfoOptions& options, const ProbeFile& file, const Census& c
     json["maximum"] = jsonOf(census.max);
     json["mean_radiance"] = jsonOf(census.mean);
     json["energy"] = jsonOf(census.energy);
-    json["brightest"] = {{"pixel", {census.sun_at.x, census.sun_at.y}},
-                         {"direction", jsonOf(census.sun_direction)},
-                         {"radiance", jsonOf(census.sun_radiance)}};
+    json["brightest"] = nullptr;
+    if (census.sun_at.x >= 0) {
+        json["brightest"] = {{"pixel", {census.sun_at.x, census.sun_at.y}},
+                             {"direction", jsonOf(census.sun_direction)},
+                             {"radiance", jsonOf(census.sun_radiance)}};
+    }
     json["nan"] = jsonOf(census.nan);
     json["infinite"] = jsonOf(census.infinite);
     json["negative"] = jsonOf(census.negative);
@@ -64,8 +68,12 @@ Json describe(const InfoOptions& options, const ProbeFile& file, const Census& c
 }
 
 std::string triple(const V3d& v) {
-    char text[96];
-    std::snprintf(text, sizeof text, "%.6g %.6g %.6g", v.x, v.y, v.z);
+    std::string text;
+    for (int c = 0; c < 3; ++c) {
+        char number[32];
+        std::snprintf(number, sizeof number, "%.6g", v[c]);
+        text += (c > 0 ? " " : "") + std::string(std::isnan(v[c]) ? "none" : number);
+    }
     return text;
 }
 
@@ -109,8 +117,10 @@ void print(const InfoOptions& options, const ProbeFile& file, const Census& cens
     line("maximum", triple(census.max));
     line("mean radiance", triple(census.mean));
     line("energy", triple(census.energy) + " (radiance times steradian)");
-    line("brightest", triple(census.sun_radiance) + " at pixel (" + std::to_string(at.x) + ", " +
-                          std::to_string(at.y) + "), direction " + triple(census.sun_direction));
+    line("brightest", at.x < 0 ? "none"
+                               : triple(census.sun_radiance) + " at pixel (" +
+                                     std::to_string(at.x) + ", " + std::to_string(at.y) +
+                                     "), direction " + triple(census.sun_direction));
     line("NaN", counted(census.nan));
     line("infinite", counted(census.infinite));
     line("negative", counted(census.negative));

@@ -106,7 +106,8 @@ int main(int argc, char** argv) {
     try {
         ibl::runCommandLine(argc, argv);
         std::cout.flush();
-        if (!std::cout) throw ibl::outputError("-", "standard output cannot be written");
+        if (!std::cout)
+            throw ibl::outputError("-", "standard output cannot be written; is its disk full?");
         return 0;
     } catch (const ibl::Error& error) {
         std::fprintf(stderr, "ibltool: %s\n", error.what());

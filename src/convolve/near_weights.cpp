@@ -380,7 +380,7 @@ NearWeights nearWeights(const NearField& field, const MapExtent& map, int x, int
 std::vector<double> peakMasses(const NearField& field, const MapExtent& map, int x, int y,
                                const Footprint& of_map, std::span<const Peak> peaks) {
     // Of texels as large as the lobe its mean is smooth over a small pixel, unless it has a ring.
-    constexpr double kSmall = 0.1; // of the lobe's width: 2 x 2 points leave 1e-7
+    constexpr double kSmall = 0.1;  // of the lobe's width: 2 x 2 points leave 1e-7
     constexpr double kPiece = 0.08; // of the outline, radians: as an Arc is off by 1e-7
     const double size = std::max(kPi / field.height, 2 * kPi / field.width);
     const bool by_points = field.ring_room == 0 && size < kSmall * field.kernel.width;

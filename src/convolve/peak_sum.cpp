@@ -8,16 +8,19 @@
 namespace ibl {
 namespace {
 
-/// Gauss points across a pixel, the pixel's largest size for which they do, of the angle over which
-/// the lobe varies (2 x 2 are off by (size / scale)^4 / 4320 of it, 4 x 4 by (size / scale)^8 /
-/// 1.8e10), and their largest error for a function that is 0 up to a place in the pixel and then
-/// rises by 1 across a pixel: the lobe's kink at its horizon.
+/// Gauss points, n to a pixel's edge.
 struct PointRule {
     int n;
+    /// Of the angle over which the lobe varies, the pixel's largest size for which they do: 2 x 2
+    /// are off by (size / scale)^4 / 4320 of it, 4 x 4 by (size / scale)^8 / 1.8e10, and 8 x 8 with
+    /// the lobe's poles at that distance by 2e-8.
     double largest;
+    /// Largest error for what is 0 up to a place in the pixel and then rises by 1 to a pixel, as
+    /// the lobe does from its horizon on.
     double kink;
 };
-constexpr std::array<PointRule, 3> kPointRules{{{2, 0.1, 0.0224}, {4, 0.5, 0.0092}, {8, 1.2, 0.0028}}};
+constexpr std::array<PointRule, 3> kPointRules{
+    {{2, 0.1, 0.0224}, {4, 0.5, 0.0092}, {8, 1.2, 0.0028}}};
 
 /// Relative RMSE that the lobe's kink at its horizon may leave where points pass over it.
 constexpr double kKink = 2e-7;
@@ -37,17 +40,21 @@ PeakRectangle rectangleOf(const Peak& peak, const PeakSum& sum, int width, int h
     const double beyond = 0.5 * kPi + 2 * r.size;
     r.none = beyond < kPi ? std::cos(beyond) : -2;
     const auto rational = rationalLobe(sum.lobe);
-    for (std::size_t i = 0; i < kPointRules.size(); ++i) {
+    // Of a lobe that is no rational function the most points take as long as the edges.
+    for (std::size_t i = 0; i < (rational ? 3 : 2); ++i) {
         const PointRule& rule = kPointRules[i];
         RangedPoints& points = r.points[i];
         points.points = pixelPoints(width, height, peak.column, peak.row, rule.n);
-        // lobeScaleAt grows from the axis on and falls towards the horizon.
-        const double scale = r.size / rule.largest, to = 0.5 * kPi - scale;
+        if (!rational) continue;
+        // lobeScaleAt grows from the axis on and falls towards the horizon, which must not cross
+        // the pixel.
+        const double scale = r.size / rule.largest;
         const double from = lobeScaleFrom(sum.lobe, sum.width, scale);
+        const double to = 0.5 * kPi - std::max(scale, 1.6 * r.size);
         points.low = to > 0 ? std::cos(to) : 2;
         points.high = from < kPi ? std::cos(from) : -2;
         if (from == 0) points.high = 2; // cosines of rounded directions
-        if (rational && kinkError(*rational, sum.norm, rule, r.size) < kKink) points.low = -2;
+        if (kinkError(*rational, sum.norm, rule, r.size) < kKink) points.low = -2;
     }
     return r;
 }
@@ -71,7 +78,6 @@ double peakMass(const PeakSum& sum, std::size_t p, double u, double v, const V3d
     const double cosine = firstCosine(r, d);
     if (cosine < r.none) return 0;
     const double t = roughAngle(cosine), scale = lobeScaleAt(sum.lobe, sum.width, t);
-    // More points of a lobe that is no rational function take as long as the edges.
     const std::size_t rule = r.size > kPointRules[0].largest * scale ? 1 : 0;
     if (r.size > kPointRules[rule].largest * scale) {
         const Axis axis = makeAxis(u, v);

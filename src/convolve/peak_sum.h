@@ -11,8 +11,8 @@
 
 namespace ibl {
 
-/// Points over a pixel, and for which places they do: those whose direction's cosine with the first
-/// point of the fewest is in [low, high].
+/// Points over a pixel and, of a lobe that is a rational function of cos t, for which places they
+/// do: those whose direction's cosine with the first point of the fewest is in [low, high].
 struct RangedPoints {
     PixelPoints points;
     double low, high;
@@ -21,8 +21,8 @@ struct RangedPoints {
 /// Where a peak lies, and points in it.
 struct PeakRectangle {
     Rectangle edges;
-    double size;                       ///< the longer edge, radians
-    double none;                       ///< cosine below which all of it lies beyond the horizon
+    double size;                        ///< the longer edge, radians
+    double none;                        ///< cosine below which all of it lies beyond the horizon
     std::array<RangedPoints, 3> points; ///< from few to many
 };
 

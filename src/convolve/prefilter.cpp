@@ -163,8 +163,8 @@ PrefilterResult directSum(const Engine& engine, const PrefilterRequest& request,
         const NearRules& rules = nearRules(0);
         const NearKernel whole(request.lobe, 0, 0);
         result.map.image = nearMap(engine.probe.panorama, areasFor(engine.probe, request.lobe),
-                                   makeNearField(whole, rules, probe.width, probe.height, threads), request,
-                                   footprint, threads, &progress);
+                                   makeNearField(whole, rules, probe.width, probe.height, threads),
+                                   request, footprint, threads, &progress);
         if (!engine.probe.negative)
             for (float& p : result.map.image.pixels)
                 p = std::max(0.0f, p);
@@ -261,7 +261,8 @@ PrefilterResult inTwoParts(const Engine& engine, const PrefilterRequest& request
     result.seconds_synthesis = watch.seconds();
     const Footprint near_footprint = footprintOf(request.lobe, texel, kAnyDegree);
     const NearRules& rules = nearRules(max_error);
-    const NearField near_field = makeNearField(split.near, rules, probe.width, probe.height, threads);
+    const NearField near_field =
+        makeNearField(split.near, rules, probe.width, probe.height, threads);
     const Image near = nearMap(engine.probe.panorama, areasFor(engine.probe, request.lobe),
                                near_field, request, near_footprint, threads);
     parts.map = &near;
@@ -294,6 +295,12 @@ PrefilterResult byMethod(const Engine& engine, const PrefilterRequest& request,
     default:
         return inTwoParts(engine, request, lobe, options.max_error, options.threads);
     }
+}
+
+/// Whether the map has so few texels that all of them take a second or two by the direct sum.
+bool isSummedSoon(const PrefilterRequest& request, const Image& probe) {
+    constexpr double kPairs = 1e8; // of a texel and a pixel
+    return texelCount(request) * probe.width * probe.height <= kPairs;
 }
 
 /// Narrow lobes' near pixels have an error that no band limit makes less: told before the work.
@@ -371,6 +378,10 @@ std::vector<PrefilterResult> prefilter(const Panorama& latlong,
             const PrefilterRequest& request = requests[plan.requests[k]];
             PrefilterResult& result = results[plan.requests[k]];
             result = byMethod(engine, request, plan.lobes[k], planned);
+            // Lobes with a step or a ring along pixels' edges, in maps where few texels are many.
+            if (result.error_bound > options.max_error && isSummedSoon(request, latlong.image)) {
+                result = directSum(engine, request, options.threads, progress);
+            }
             result.seconds_analysis = seconds_measuring + engine.seconds;
         }
     }

@@ -22,7 +22,9 @@ RadialTable::RadialTable(const std::function<double(double x)>& function, double
     cubics_.resize(static_cast<std::size_t>(last - first_));
     constexpr std::size_t kAtOnce = 32;
     parallelForRuns(cubics_.size(), kAtOnce, threads, [&](std::size_t begin, std::size_t end) {
-        const auto edgeOf = [&](std::size_t i) { return edge(first_ + static_cast<std::int64_t>(i)); };
+        const auto edgeOf = [&](std::size_t i) {
+            return edge(first_ + static_cast<std::int64_t>(i));
+        };
         double at_from = function(edgeOf(begin));
         for (std::size_t i = begin; i < end; ++i) {
             const double from = edgeOf(i), to = edgeOf(i + 1);

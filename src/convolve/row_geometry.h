@@ -7,7 +7,7 @@
 
 namespace ibl {
 
-/// latlongPoint (conventions.h) of `n` polar directions (peaks.h) of any length but 0.
+/// latlongPoint (conventions.h) of `n` polar directions (peaks.h), to 4e-16; on the seam u is 0.
 void latlongPoints(const V3d* direction, std::size_t n, double* u, double* v);
 
 /// cubeTexelSolidAngle of the texels (0 .. edge - 1, j) of a face, steradians.

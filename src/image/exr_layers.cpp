@@ -153,7 +153,7 @@ ExrChoice chooseExrLayer(const std::vector<Imf::Header>& parts, const std::strin
     const std::string names = listed(exrLayers(parts));
     if (layer.empty()) {
         throw inputError(file_name, "has no R, G, B or Y channels outside its layers, only " +
-                                        names + "; say which layer to read");
+                                        names + "; say which one to read (--layer)");
     }
     throw inputError(file_name,
                      "has no layer '" + layer + "'" +

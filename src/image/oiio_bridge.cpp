@@ -57,7 +57,8 @@ private:
 void requireWriter(const OiioModule& module, const std::string& path, const std::string& format) {
     if (module.hasWriter(format)) return;
     throw Error(ExitCode::usage, path + ": there is no writer for '" + format +
-                                     "'; give a name that ends in .exr, .hdr, .png or .tif");
+                                     "'; end the name in .exr, .hdr, .png or .tif, or name such a "
+                                     "--format");
 }
 
 } // namespace

@@ -238,7 +238,7 @@ std::vector<std::size_t> findScanlines(Bytes bytes, const Header& header, const 
         if (size == 0) {
             throw inputError(name, "scanline " + std::to_string(k) + " of " +
                                        std::to_string(o.lines) +
-                                       " is damaged or cut off; the file is truncated or corrupt");
+                                       " is damaged or cut off; copy or export the file again");
         }
         at += size;
     }

@@ -101,8 +101,9 @@ void requireFittingOptions(const std::string& path, const std::string& format,
     if (format != "exr") requireNoCompression(path, options);
     if (format != "exr" && !options.envmap.empty()) {
         throw Error(ExitCode::usage, path +
-                                         ": only OpenEXR files have an envmap to choose; leave it "
-                                         "out, or write .exr");
+                                         ": only OpenEXR files have an envmap to choose (as the "
+                                         "layouts exr-latlong and exr-cube do); leave it out, or "
+                                         "write .exr");
     }
     if (format != "exr" && !options.extra.empty()) {
         throw Error(ExitCode::usage, path + ": only OpenEXR files have further channels; write "

@@ -22,6 +22,7 @@ struct RowCensus {
     V3d min{std::numeric_limits<double>::infinity()};
     V3d max{-std::numeric_limits<double>::infinity()};
     V3d energy{0, 0, 0};
+    V3d solid_angle{0, 0, 0}; ///< of what is finite
     double brightest = -std::numeric_limits<double>::infinity();
     int brightest_x = 0;
 };
@@ -64,6 +65,7 @@ void countPixel(RowCensus& row, const float* pixel, int x, int y, double solid_a
             row.min[c] = std::min(row.min[c], static_cast<double>(value));
             row.max[c] = std::max(row.max[c], static_cast<double>(value));
             row.energy[c] += value * solid_angle;
+            row.solid_angle[c] += solid_angle;
         }
     }
     if (!nan && !infinite) seekBrightest(row, pixel, x);
@@ -98,6 +100,7 @@ bool countCleanRow(RowCensus& row, const float* pixels, int width, double solid_
         row.max[k % 3] = std::max(row.max[k % 3], static_cast<double>(most[k]));
         row.energy[k % 3] += sum[k] * solid_angle;
     }
+    row.solid_angle += V3d(width * solid_angle);
     for (int x = 0; x < width; ++x) {
         const float* p = pixels + 3 * x;
         // Luminance is a mean of the channels. It is seldom worked out.
@@ -273,6 +276,7 @@ Census takeCensus(const Panorama& panorama, int threads) {
             total.max[c] = std::max(total.max[c], row.max[c]);
         }
         total.energy += row.energy;
+        total.solid_angle += row.solid_angle;
         if (row.brightest > total.brightest) {
             total.brightest = row.brightest;
             census.sun_at = V2i(row.brightest_x, static_cast<int>(r));
@@ -282,9 +286,9 @@ Census takeCensus(const Panorama& panorama, int threads) {
         if (total.min[c] > total.max[c]) continue; // nothing finite
         census.min[c] = total.min[c];
         census.max[c] = total.max[c];
+        census.mean[c] = total.energy[c] / total.solid_angle[c];
     }
     census.energy = total.energy;
-    census.mean = total.energy / (4 * kPi);
     if (std::isfinite(total.brightest)) {
         const float* sun = image.at(census.sun_at.x, census.sun_at.y);
         census.sun_radiance = V3d(sun[0], sun[1], sun[2]);

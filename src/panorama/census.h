@@ -5,6 +5,8 @@
 #include "panorama/layouts.h"
 #include "panorama/panorama.h"
 
+#include <limits>
+
 namespace ibl {
 
 /// Pixels with something wrong in at least one channel.
@@ -23,14 +25,15 @@ struct Census {
     BadPixels infinite;
     BadPixels negative; ///< finite and below zero
 
-    V3d min{0, 0, 0}; ///< of finite values, a channel
-    V3d max{0, 0, 0};
-    V3d energy{0, 0, 0}; ///< total over the sphere
-    V3d mean{0, 0, 0};   ///< energy / 4 pi
+    static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    V3d min{kNone}; ///< of finite values, a channel; NaN where there are none
+    V3d max{kNone};
+    V3d mean{kNone};
+    V3d energy{0, 0, 0}; ///< total of them over the sphere
 
-    V2i sun_at{0, 0}; ///< the pixel of greatest luminance (0.2125, 0.7154, 0.0721)
-    V3d sun_direction{0, 0, 1};
-    V3d sun_radiance{0, 0, 0};
+    V2i sun_at{-1, -1}; ///< the pixel of greatest luminance (0.2125, 0.7154, 0.0721), if any
+    V3d sun_direction{kNone};
+    V3d sun_radiance{kNone};
 };
 
 /// Counts over the whole panorama; the same for any number of threads (0: the machine's).

@@ -98,19 +98,25 @@ inline V3d cubeTexelDirection(int face, int i, int j, int edge) {
     return cubeDirection({face, (2.0 * i + 1) / edge - 1, (2.0 * j + 1) / edge - 1});
 }
 
-/// Solid angle of a rectangle on a cube face, exact, steradians: the alternating sum over its
-/// corners of the integral of (1 + s^2 + t^2)^(-3/2), which is atan(s t / sqrt(1 + s^2 + t^2)). The
-/// angles are added as the arguments of a product of complex numbers, which takes one arc tangent.
-inline double cubeRectangleSolidAngle(double s0, double s1, double t0, double t1) {
+/// A complex number whose argument is the solid angle of a rectangle on a cube face, exact: the
+/// alternating sum over its corners of the integral of (1 + s^2 + t^2)^(-3/2), which is atan(s t /
+/// sqrt(1 + s^2 + t^2)). The angles are added as the arguments of a product, which takes one arc
+/// tangent.
+inline V2d cubeRectangleProduct(double s0, double s1, double t0, double t1) {
     const double r00 = std::sqrt(s0 * s0 + t0 * t0 + 1), p00 = s0 * t0;
     const double r01 = std::sqrt(s0 * s0 + t1 * t1 + 1), p01 = s0 * t1;
     const double r10 = std::sqrt(s1 * s1 + t0 * t0 + 1), p10 = s1 * t0;
     const double r11 = std::sqrt(s1 * s1 + t1 * t1 + 1), p11 = s1 * t1;
-    // (r00 + i p00) (r01 - i p01) and (r10 - i p10) (r11 + i p11), and their product.
+    // (r00 + i p00) (r01 - i p01) and (r10 - i p10) (r11 + i p11).
     const double left_re = r00 * r01 + p00 * p01, left_im = p00 * r01 - r00 * p01;
     const double right_re = r10 * r11 + p10 * p11, right_im = r10 * p11 - p10 * r11;
-    return std::atan2(left_re * right_im + left_im * right_re,
-                      left_re * right_re - left_im * right_im);
+    return {left_re * right_re - left_im * right_im, left_re * right_im + left_im * right_re};
+}
+
+/// Solid angle of a rectangle on a cube face, exact, steradians.
+inline double cubeRectangleSolidAngle(double s0, double s1, double t0, double t1) {
+    const V2d product = cubeRectangleProduct(s0, s1, t0, t1);
+    return std::atan2(product.y, product.x);
 }
 
 /// Solid angle of texel (i, j) of an N x N cube face, exact, steradians.

@@ -192,10 +192,10 @@ Layout detectLayout(std::string_view subject, int width, int height, std::string
     for (Layout layout : {Layout::vcross, Layout::hcross, Layout::strip, Layout::vstrip}) {
         if (layoutSize(layout, width, height)) return layout;
     }
-    throw inputError(
-        subject,
-        "no layout has the shape " + extentText(width, height) +
-            "; a lat-long is twice as wide as high; name the layout (--from) if it is one");
+    throw inputError(subject, "no layout has the shape " + extentText(width, height) +
+                                  "; a lat-long is twice as wide as high, and square maps are "
+                                  "taken when named; name the layout "
+                                  "(--from) if it is one");
 }
 
 void requireLayoutExtent(std::string_view subject, Layout layout, int width, int height) {

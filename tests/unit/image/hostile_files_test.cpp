@@ -109,7 +109,7 @@ TEST_F(HostileFiles, AlteredBytesNeverCrash) {
 
 TEST_F(HostileFiles, AnAttributeLargerThanItsFileTakesNoMemory) {
     std::string bytes("\x76\x2f\x31\x01\x02\0\0\0", 8);
-    bytes += std::string("comments\0string\0", 16) + "\xff\xff\xff\x7f" + "text";
+    bytes += std::string("comments\0string\0\xff\xff\xff\x7ftext", 24);
     rusage before = {}, after = {};
     ::getrusage(RUSAGE_SELF, &before);
     EXPECT_FALSE(isRead(bytes));

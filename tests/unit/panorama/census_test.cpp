@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 namespace ibl {
@@ -38,6 +39,23 @@ TEST(Census, CountsAndPlacesBadPixels) {
     EXPECT_EQ(census.negative.extreme_at, V2i(31, 15));
     EXPECT_EQ(census.min, V3d(-1, 1, -3894));
     EXPECT_EQ(census.max, V3d(1, 1, 1));
+}
+
+TEST(Census, MeansAreOfWhatIsFinite) {
+    for (const Layout layout : {Layout::latlong, Layout::vcross}) {
+        const V2i e = layoutExtent(layout, 16);
+        Panorama p = filled(layout, e.x, e.y, [](const V3d& d) { return V3d(2, 3, d.y < 0); });
+        for (int x = 0; x < e.x; ++x)
+            p.image.at(x, e.y / 3)[0] = kNan;
+        const Census census = takeCensus(p);
+        EXPECT_NEAR(census.mean.x, 2, 1e-12) << layoutName(layout);
+        EXPECT_NEAR(census.mean.y, 3, 1e-12) << layoutName(layout);
+        EXPECT_LT(census.energy.x, 8 * kPi - 0.1) << layoutName(layout);
+    }
+    const Census none =
+        takeCensus(filled(Layout::latlong, 8, 4, [](const V3d&) { return V3d(kInf); }));
+    EXPECT_TRUE(std::isnan(none.mean.x) && std::isnan(none.min.y) && std::isnan(none.max.z));
+    EXPECT_EQ(none.sun_at, V2i(-1, -1));
 }
 
 TEST(Census, EnergyIsRadianceTimesSolidAngle) {
