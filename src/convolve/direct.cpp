@@ -108,6 +108,7 @@ DirectSum makeDirectSum(const Lobe& lobe, const Image& probe, double scale) {
             lobeWidth(lobe),
             1 / lobeIntegral(lobe),
             {lobeReach(lobe), lobeVariation(lobe)},
+            lobeBegin(lobe),
             makeGrid(probe.width, probe.height, 2),
             makeGrid(probe.width, probe.height, 4)};
 }
@@ -129,7 +130,7 @@ void addDirect(const DirectSum& direct, const Axis& axis, double* sum) {
             const int i = ((k % w) + w) % w;
             const double t = std::acos(std::clamp(
                 rotated.cosineTo(direct.coarse, 2 * std::size_t(i), 2 * std::size_t(j)), -1., 1.));
-            if (t > radius + 2 * size) continue;
+            if (t > radius + 2 * size || t + 2 * size < direct.begin) continue;
             const double scale = lobeScaleAt(direct.lobe, direct.width, t);
             double mass = 0;
             if (size > kFine * scale) {

@@ -33,7 +33,8 @@ struct DirectSum {
     LobeMassBeyond mass_beyond;
     double width; ///< lobeWidth
     double norm;  ///< 1 / integral of the lobe
-    Disc disc;    ///< where the lobe is not zero
+    Disc disc;    ///< where the lobe is not zero,
+    double begin; ///< but for what is nearer to its axis
     PixelPointGrid coarse, fine;
 };
 

@@ -189,6 +189,13 @@ bool endsInStep(const Lobe& lobe) {
     return lobe.kernel == Kernel::phong && lobe.parameter < 1;
 }
 
+double lobeBegin(const Lobe& lobe) {
+    if (lobe.kernel != Kernel::charlie) return 0;
+    // Within t lies x^(q + 1) (q + 2 - (q + 1) x) of it, x = 1 - cos t.
+    const double q = exponentOf(lobe);
+    return std::acos(1 - std::pow(1e-17 / (q + 2), 1 / (q + 1)));
+}
+
 double lobeReach(const Lobe& lobe) {
     // What lies beyond t is below 2 cos^n t of Phong's integral, below 2 cos^n(t/2) of Blinn's.
     const double n = lobe.parameter, half_pi = 0.5 * kPi;

@@ -107,6 +107,9 @@ std::optional<RationalLobe> rationalLobe(const Lobe& lobe);
 /// exponent below 1.
 bool endsInStep(const Lobe& lobe);
 
+/// Angle (radians) within which lies less than 1e-17 of the integral: 0 but for Charlie, a ring.
+double lobeBegin(const Lobe& lobe);
+
 /// Angle (radians) beyond which lies less than 1e-17 of the integral: at most pi / 2.
 double lobeReach(const Lobe& lobe);
 

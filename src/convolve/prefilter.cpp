@@ -297,10 +297,16 @@ PrefilterResult byMethod(const Engine& engine, const PrefilterRequest& request,
     }
 }
 
-/// Whether the map has so few texels that all of them take a second or two by the direct sum.
+/// Whether the map has so few texels that the direct sum takes 12 s of one core or less.
 bool isSummedSoon(const PrefilterRequest& request, const Image& probe) {
-    constexpr double kPairs = 1e8; // of a texel and a pixel
-    return texelCount(request) * probe.width * probe.height <= kPairs;
+    // Of a texel and a pixel, as measured: by a point and by outlines, of rings besides.
+    constexpr double kPoint = 0.12e-6, kPointOfRing = 0.25e-6;
+    constexpr double kOutlines = 0.6e-6, kOutlinesOfRing = 6e-6;
+    const bool is_ring = request.lobe.kernel == Kernel::charlie;
+    const bool by_outlines = footprintOf(request.lobe, texelAngle(request), kAnyDegree).scale > 0;
+    const double each = by_outlines ? (is_ring ? kOutlinesOfRing : kOutlines)
+                                    : (is_ring ? kPointOfRing : kPoint);
+    return each * texelCount(request) * probe.width * probe.height <= 12;
 }
 
 /// Narrow lobes' near pixels have an error that no band limit makes less: told before the work.
