@@ -30,8 +30,9 @@ constexpr int kTailBands = 64;
 struct Costs {
     static constexpr double kLegendre = 0.4;     ///< a cubed degree, analysis or synthesis
     static constexpr double kGrid = 300;         ///< a squared degree: transforms of the synthesis
-    static constexpr double kPeak = 40;          ///< a peak and a point, by Gauss points
-    static constexpr double kPeakEdges = 800;    ///< the same by edges, where lobes are narrow
+    static constexpr double kPeak = 10;          ///< a peak and a point, of a rational lobe,
+    static constexpr double kPeakOfOthers = 170; ///< of other lobes,
+    static constexpr double kPeakEdges = 800;    ///< or by edges, where lobes are narrow
     static constexpr double kPeakOutlines = 1e5; ///< a peak and a texel (peak_map.h)
 };
 
@@ -62,8 +63,10 @@ double costOf(const std::vector<int>& degrees, const std::vector<double>& over,
         const Footprint footprint =
             footprintOf(requests[i].lobe, texelAngle(requests[i]), kAnyDegree);
         const bool smooth = 2 * pixel < lobeWidth(requests[i].lobe);
-        const double at_points =
-            (smooth ? Costs::kPeak : Costs::kPeakEdges) * footprint.samples * footprint.samples;
+        const double each = !smooth                          ? Costs::kPeakEdges
+                            : rationalLobe(requests[i].lobe) ? Costs::kPeak
+                                                             : Costs::kPeakOfOthers;
+        const double at_points = each * footprint.samples * footprint.samples;
         cost +=
             (isCrossedByHorizons(requests[i].lobe, footprint) ? Costs::kPeakOutlines : at_points) *
             peaks * texelCount(requests[i]);
@@ -139,7 +142,7 @@ Plan planTogether(const ProbeStatistics& probe, std::span<const PrefilterRequest
 
     double best = std::numeric_limits<double>::infinity();
     std::vector<int> chosen(requests.size(), -1);
-    for (const int peaks : {0, 1, 4, 16, 64, 256, kMostPeaks}) {
+    for (const int peaks : {0, 1, 2, 4, 8, 16, 32, 64, 128, 256, kMostPeaks}) {
         const double threshold = peakThreshold(probe, peaks);
         const std::vector<double> energy{clampedEnergy(probe, threshold)};
         std::vector<int> degrees(requests.size(), -1);
