@@ -182,11 +182,56 @@ PrefilterResult directSum(const Engine& engine, const PrefilterRequest& request,
     return result;
 }
 
-WorstTexels worstTexels(const PrefilterRequest& request, int threads) {
+/// Whether the direct sum takes 12 s of one core or less for that many of the map's texels.
+bool isSummedSoon(const PrefilterRequest& request, double texels, const Image& probe) {
+    // Of a texel and a pixel, as measured: by a point and by outlines, of rings besides.
+    constexpr double kPoint = 0.12e-6, kPointOfRing = 0.25e-6;
+    constexpr double kOutlines = 0.6e-6, kOutlinesOfRing = 6e-6;
     const bool is_ring = request.lobe.kernel == Kernel::charlie;
-    if (!is_ring && !endsInStep(request.lobe)) return {};
-    return {shareAlongEdges(request, threads),
-            is_ring ? kRingTimes : std::numeric_limits<double>::infinity()};
+    const bool by_outlines = footprintOf(request.lobe, texelAngle(request), kAnyDegree).scale > 0;
+    const double each =
+        by_outlines ? (is_ring ? kOutlinesOfRing : kOutlines) : (is_ring ? kPointOfRing : kPoint);
+    return each * texels * probe.width * probe.height <= 12;
+}
+
+/// Sums some texels directly, of a map whose texels are their centres' values.
+void sumDirectly(const Engine& engine, const PrefilterRequest& request,
+                 const std::vector<V2i>& texels, int threads, Panorama& map) {
+    const DirectSum direct = makeDirectSum(request.lobe, engine.probe.image, engine.probe.scale);
+    Image& image = map.image;
+    parallelFor(texels.size(), threads, [&](std::size_t i) {
+        const V2i at = texels[i];
+        const V2d p = latlongPoint(
+            *texelDirection(request.layout, image.width, image.height, at.x + 0.5, at.y + 0.5));
+        double sum[3] = {0, 0, 0};
+        addDirect(direct, makeAxis(p.x, p.y), sum);
+        for (int c = 0; c < 3; ++c) {
+            const double value = sum[c] / engine.probe.scale;
+            image.at(at.x, at.y)[c] =
+                static_cast<float>(engine.probe.negative ? value : std::max(0.0, value));
+        }
+    });
+}
+
+/// The relative error of a map by harmonics. Where texels whose horizons run along pixels' edges
+/// would take it beyond the asked one, and are few, they are summed directly.
+RelativeError errorOfHarmonics(const Engine& engine, const PrefilterRequest& request,
+                               const Footprint& footprint, const SpectrumError& error,
+                               const MapNorm& norm, double max_error, int threads, Panorama& map) {
+    const double size = norm.root() * engine.probe.scale;
+    const RelativeError elsewhere = relativeError(error, size, norm.texels());
+    const bool is_ring = request.lobe.kernel == Kernel::charlie;
+    if (!is_ring && !endsInStep(request.lobe)) return elsewhere;
+    const TexelsAlongEdges along = texelsAlongEdges(request, threads);
+    const double times = is_ring ? kRingTimes : std::numeric_limits<double>::infinity();
+    const RelativeError all = relativeError(error, size, norm.texels(), {along.share, times});
+    const double count = static_cast<double>(along.at.size());
+    if (all.bound <= max_error || footprint.scale > 0 ||
+        !isSummedSoon(request, count, engine.probe.image)) {
+        return all;
+    }
+    sumDirectly(engine, request, along.at, threads, map);
+    return elsewhere;
 }
 
 PrefilterResult byHarmonics(const Engine& engine, const PrefilterRequest& request,
@@ -233,8 +278,8 @@ PrefilterResult byHarmonics(const Engine& engine, const PrefilterRequest& reques
     result.band_limit = degree;
     result.peaks_split = static_cast<int>(engine.peaks.size());
     const SpectrumError error = spectrumError(lobe.k, engine.power, engine.clamped_energy, degree);
-    const RelativeError relative_error = relativeError(
-        error, norm.root() * engine.probe.scale, norm.texels(), worstTexels(request, threads));
+    const RelativeError relative_error =
+        errorOfHarmonics(engine, request, footprint, error, norm, max_error, threads, result.map);
     const bool by_points = norm.root() > 0 && (footprint.samples > 1 || isBallMap(request.layout));
     const double within = by_points ? kFootprintError : 0;
     result.error_bound = std::hypot(relative_error.bound + within, outlines_error);
@@ -295,18 +340,6 @@ PrefilterResult byMethod(const Engine& engine, const PrefilterRequest& request,
     default:
         return inTwoParts(engine, request, lobe, options.max_error, options.threads);
     }
-}
-
-/// Whether the map has so few texels that the direct sum takes 12 s of one core or less.
-bool isSummedSoon(const PrefilterRequest& request, const Image& probe) {
-    // Of a texel and a pixel, as measured: by a point and by outlines, of rings besides.
-    constexpr double kPoint = 0.12e-6, kPointOfRing = 0.25e-6;
-    constexpr double kOutlines = 0.6e-6, kOutlinesOfRing = 6e-6;
-    const bool is_ring = request.lobe.kernel == Kernel::charlie;
-    const bool by_outlines = footprintOf(request.lobe, texelAngle(request), kAnyDegree).scale > 0;
-    const double each = by_outlines ? (is_ring ? kOutlinesOfRing : kOutlines)
-                                    : (is_ring ? kPointOfRing : kPoint);
-    return each * texelCount(request) * probe.width * probe.height <= 12;
 }
 
 /// Narrow lobes' near pixels have an error that no band limit makes less: told before the work.
@@ -384,8 +417,8 @@ std::vector<PrefilterResult> prefilter(const Panorama& latlong,
             const PrefilterRequest& request = requests[plan.requests[k]];
             PrefilterResult& result = results[plan.requests[k]];
             result = byMethod(engine, request, plan.lobes[k], planned);
-            // Lobes with a step or a ring along pixels' edges, in maps where few texels are many.
-            if (result.error_bound > options.max_error && isSummedSoon(request, latlong.image)) {
+            if (result.error_bound > options.max_error &&
+                isSummedSoon(request, texelCount(request), latlong.image)) {
                 result = directSum(engine, request, options.threads, progress);
             }
             result.seconds_analysis = seconds_measuring + engine.seconds;

@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <optional>
 
 namespace ibl {
@@ -234,19 +233,26 @@ double texelCount(const PrefilterRequest& request) {
     return cube ? 6 * n * n : 2 * n * n;
 }
 
-double shareAlongEdges(const PrefilterRequest& request, int threads) {
+TexelsAlongEdges texelsAlongEdges(const PrefilterRequest& request, int threads) {
     constexpr double kOn = 1e-9;
     const V2i extent = layoutExtent(request.layout, request.size);
-    std::vector<double> along(static_cast<std::size_t>(extent.y));
-    parallelFor(along.size(), threads, [&](std::size_t row) {
+    std::vector<std::vector<int>> columns(static_cast<std::size_t>(extent.y));
+    parallelFor(columns.size(), threads, [&](std::size_t row) {
         const int y = static_cast<int>(row);
         for (int x = 0; x < extent.x; ++x) {
             const auto d = texelDirection(request.layout, extent.x, extent.y, x + 0.5, y + 0.5);
             if (d && (std::abs(d->y) < kOn || std::hypot(d->x, d->z) < kOn))
-                along[row] += texelSolidAngle(request.layout, extent.x, extent.y, x, y);
+                columns[row].push_back(x);
         }
     });
-    return std::accumulate(along.begin(), along.end(), 0.0) / (4 * kPi);
+    TexelsAlongEdges along{};
+    for (int y = 0; y < extent.y; ++y) {
+        for (const int x : columns[static_cast<std::size_t>(y)]) {
+            along.at.emplace_back(x, y);
+            along.share += texelSolidAngle(request.layout, extent.x, extent.y, x, y) / (4 * kPi);
+        }
+    }
+    return along;
 }
 
 V3d texelPlace(const MapExtent& map, int x, int y, V2d offset) {

@@ -4,6 +4,7 @@
 #include "convolve/lobe.h"
 #include "convolve/prefilter.h"
 #include "panorama/conventions.h"
+#include "panorama/layouts.h"
 
 #include <array>
 #include <vector>
@@ -52,10 +53,13 @@ Footprint footprintOfTexel(const Footprint& of_map, Layout layout, int size, int
 /// The number of texels of the map that have a direction.
 double texelCount(const PrefilterRequest& request);
 
-/// The part of the map's solid angle whose texels look along the equator or at a pole: their
-/// horizons run along the edges of a lat-long's pixels, and lobes with a step or a ring there have
-/// their greatest errors.
-double shareAlongEdges(const PrefilterRequest& request, int threads);
+/// The texels that look along the equator or at a pole: their horizons run along the edges of a
+/// lat-long's pixels, and lobes with a step or a ring there have their greatest errors.
+struct TexelsAlongEdges {
+    std::vector<V2i> at;
+    double share; ///< of the map's solid angle
+};
+TexelsAlongEdges texelsAlongEdges(const PrefilterRequest& request, int threads);
 
 /// The texels of one row of a map that have a direction, and their points.
 struct RowPoints {

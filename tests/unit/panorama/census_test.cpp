@@ -52,10 +52,6 @@ TEST(Census, MeansAreOfWhatIsFinite) {
         EXPECT_NEAR(census.mean.y, 3, 1e-12) << layoutName(layout);
         EXPECT_LT(census.energy.x, 8 * kPi - 0.1) << layoutName(layout);
     }
-    const Census none =
-        takeCensus(filled(Layout::latlong, 8, 4, [](const V3d&) { return V3d(kInf); }));
-    EXPECT_TRUE(std::isnan(none.mean.x) && std::isnan(none.min.y) && std::isnan(none.max.z));
-    EXPECT_EQ(none.sun_at, V2i(-1, -1));
 }
 
 TEST(Census, EnergyIsRadianceTimesSolidAngle) {
@@ -88,8 +84,9 @@ TEST(Census, SurvivesNothingFinite) {
     const Census census =
         takeCensus(filled(Layout::latlong, 2, 1, [](const V3d&) { return V3d(kNan); }));
     EXPECT_EQ(census.nan.count, 2);
-    EXPECT_EQ(census.max, V3d(0));
+    EXPECT_TRUE(std::isnan(census.mean.x) && std::isnan(census.min.y) && std::isnan(census.max.z));
     EXPECT_EQ(census.energy, V3d(0));
+    EXPECT_EQ(census.sun_at, V2i(-1, -1));
 }
 
 TEST(Census, DoesNotDependOnThreads) {
