@@ -98,6 +98,9 @@ int mostRows(const Panorama& probe, double error) {
     return std::max(latlongHeight(probe), fewer ? 1024 : 2048);
 }
 
+/// By which the error of reading falls at least, from one lat-long to one of twice as many rows.
+constexpr double kRowsFall = 8;
+
 /// The rows that a probe is first read into: its own number halved or doubled, even and from 256
 /// on, from where on the error falls as it should.
 int firstRows(const Panorama& probe) {
@@ -133,25 +136,43 @@ void bindQuality(CLI::App& app, QualityOptions& options) {
         ->group("Accuracy");
 }
 
+namespace {
+
+/// A lat-long for a probe of another layout, with so many rows that reading it takes half of the
+/// error asked for, if that can be.
+Panorama readFor(const Panorama& probe, std::span<const PrefilterRequest> requests, double asked,
+                 int threads) {
+    const double allowed = 0.5 * asked;
+    const auto read = [&](int rows) { return latlongOfMoments(probe, rows, threads); };
+    const auto errorOfReading = [&](const Panorama& latlong) {
+        double error = 0;
+        for (const ReadingError& e : readingErrors(latlong.image, requests, threads))
+            error = std::max(error, e.bound);
+        return error;
+    };
+    int rows = firstRows(probe);
+    Panorama latlong = read(rows);
+    double error = errorOfReading(latlong);
+    const int first = rows, most = mostRows(probe, asked);
+    for (; error > allowed && 2 * rows <= most; error /= kRowsFall)
+        rows *= 2;
+    if (rows > first) latlong = read(rows);
+    // Twice as many as ever only if they are enough and these are not.
+    if (error > allowed && 2 * rows > most && !isSquareMap(probe.layout)) {
+        error = errorOfReading(latlong);
+        if (error > asked && error / kRowsFall <= allowed) latlong = read(2 * rows);
+    }
+    return latlong;
+}
+
+} // namespace
+
 ProbeToPrefilter toPrefilter(Session& session, Panorama&& probe,
                              std::span<const PrefilterRequest> requests,
                              const QualityOptions& quality) {
     if (probe.layout == Layout::latlong) return {std::move(probe), std::nullopt};
-    constexpr double kPart = 0.5; ///< of the error allowed
-    const double allowed = kPart * errorOf(quality);
-    const int most = mostRows(probe, errorOf(quality));
-    const auto read = [&](int rows) { return latlongOfMoments(probe, rows, session.threads()); };
-    Panorama latlong = session.stage("resample", [&] {
-        const int first = firstRows(probe);
-        Panorama coarse = read(first);
-        double error = 0;
-        for (const ReadingError& e : readingErrors(coarse.image, requests, session.threads()))
-            error = std::max(error, e.bound);
-        int rows = first;
-        for (; error > allowed && 2 * rows <= most; error /= 8)
-            rows *= 2;
-        return rows > first ? read(rows) : std::move(coarse);
-    });
+    Panorama latlong = session.stage(
+        "resample", [&] { return readFor(probe, requests, errorOf(quality), session.threads()); });
     return {std::move(latlong), std::move(probe)};
 }
 
