@@ -5,6 +5,7 @@
 #include "convolve/error_bound.h"
 #include "convolve/evaluate.h"
 #include "convolve/fill_map.h"
+#include "convolve/near_cube.h"
 #include "convolve/near_map.h"
 #include "convolve/peak_map.h"
 #include "convolve/plan.h"
@@ -308,8 +309,11 @@ PrefilterResult inTwoParts(const Engine& engine, const PrefilterRequest& request
     const NearRules& rules = nearRules(max_error);
     const NearField near_field =
         makeNearField(split.near, rules, probe.width, probe.height, threads);
-    const Image near = nearMap(engine.probe.panorama, areasFor(engine.probe, request.lobe),
-                               near_field, request, near_footprint, threads);
+    const Panorama* source = engine.probe.source;
+    const Image near = source && isCubeFamily(source->layout)
+                           ? nearMapOfCube(*source, near_field, request, near_footprint, threads)
+                           : nearMap(engine.probe.panorama, areasFor(engine.probe, request.lobe),
+                                     near_field, request, near_footprint, threads);
     parts.map = &near;
     MapNorm norm;
     fillMap(request, footprintOf(request.lobe, texel, split.degree), parts, threads, result.map,

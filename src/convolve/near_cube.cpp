@@ -1,0 +1,363 @@
+#include "convolve/near_cube.h"
+
+#include "convolve/near_texel.h"
+#include "core/parallel.h"
+#include "panorama/conventions.h"
+#include "panorama/layouts.h"
+#include "panorama/resample.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+namespace ibl {
+namespace {
+
+/// As peaks.h has them.
+V3d polar(const V3d& d) {
+    return {-d.z, d.x, d.y};
+}
+
+/// A face as a plane at the distance 1: place (s, t) is `middle + s * right + t * down`.
+struct Plane {
+    V3d middle, right, down;
+    bool turned; ///< right to down is clockwise as seen from outside
+
+    explicit Plane(int face)
+        : middle(polar(cubeDirection({face, 0, 0}))),
+          right(polar(cubeDirection({face, 1, 0})) - middle),
+          down(polar(cubeDirection({face, 0, 1})) - middle),
+          turned(right.cross(down).dot(middle) < 0) {}
+
+    V3d at(double s, double t) const { return (middle + right * s + down * t).normalized(); }
+};
+
+/// The texels of the probe.
+struct Grid {
+    int edge;
+    std::vector<double> solid_angle; ///< [row][column] of any face
+
+    double line(int i) const { return 2.0 * i / edge - 1; }
+    double areaOf(int row, int column) const {
+        return solid_angle[static_cast<std::size_t>(row) * edge + column];
+    }
+};
+
+/// Those texels of a face that are near a map's texel, and their weights in it.
+struct FaceBlock {
+    int face = 0;
+    int row = 0, rows = 0, column = 0, columns = 0;
+    std::vector<double> weight; ///< [row][column]
+    std::vector<char> near;     ///< which are by edges
+
+    int at(int j, int i) const {
+        return j < 0 || i < 0 || j >= rows || i >= columns ? -1 : j * columns + i;
+    }
+    bool isNear(int pixel) const { return pixel >= 0 && near[static_cast<std::size_t>(pixel)]; }
+    void add(int pixel, double value) {
+        if (isNear(pixel)) weight[static_cast<std::size_t>(pixel)] += value;
+    }
+};
+
+/// The range of s that a cap about `c` meets, for the plane with the axes `right` and `middle`;
+/// nothing where it is empty.
+std::optional<V2d> rangeWithin(const V3d& c, const V3d& right, const V3d& middle, double radius) {
+    const double x = c.dot(right), z = c.dot(middle), length = std::hypot(x, z);
+    if (std::sin(radius) >= length || radius >= 0.5 * kPi) return V2d(-1, 1);
+    const double at = std::atan2(x, z), width = std::asin(std::sin(radius) / length);
+    const double low = at - width, high = at + width;
+    if (low >= 0.5 * kPi || high <= -0.5 * kPi) return std::nullopt;
+    const V2d range(low <= -0.5 * kPi ? -1 : std::max(-1.0, std::tan(low)),
+                    high >= 0.5 * kPi ? 1 : std::min(1.0, std::tan(high)));
+    if (range.x >= range.y) return std::nullopt;
+    return range;
+}
+
+std::vector<FaceBlock> blocksAbout(const Grid& grid, const V3d& centre, double radius) {
+    std::vector<FaceBlock> blocks;
+    for (int face = 0; face < 6; ++face) {
+        const Plane plane(face);
+        const auto s = rangeWithin(centre, plane.right, plane.middle, radius);
+        const auto t = rangeWithin(centre, plane.down, plane.middle, radius);
+        if (!s || !t) continue;
+        const auto texel = [&](double place) {
+            return std::clamp(static_cast<int>(0.5 * (place + 1) * grid.edge), 0, grid.edge - 1);
+        };
+        FaceBlock block;
+        block.face = face;
+        block.column = texel(s->x);
+        block.columns = texel(s->y) + 1 - block.column;
+        block.row = texel(t->x);
+        block.rows = texel(t->y) + 1 - block.row;
+        const std::size_t count = static_cast<std::size_t>(block.rows) * block.columns;
+        block.weight.assign(count, 0.0);
+        block.near.assign(count, 0);
+        blocks.push_back(std::move(block));
+    }
+    return blocks;
+}
+
+/// The mean of the kernel over a texel of the probe and the points of the map's: by 2 x 2 points.
+double meanOf(const RadialTable& value, const Grid& grid, const Plane& plane, int row, int column,
+              const std::vector<TexelPoint>& texel) {
+    const double half = 1.0 / grid.edge, off = half / std::numbers::sqrt3;
+    double mean = 0, total = 0;
+    for (const double t : {-off, off}) {
+        for (const double s : {-off, off}) {
+            const double x = grid.line(column) + half + s, y = grid.line(row) + half + t;
+            const V3d d = plane.at(x, y);
+            const double share = std::pow(1 + x * x + y * y, -1.5);
+            for (const TexelPoint& point : texel)
+                mean += share * point.share * value((d - point.at).length2());
+            total += share;
+        }
+    }
+    return mean / total;
+}
+
+/// Marks the texels that are near and sets the others' weights, as near_weights.cpp does.
+void addFar(const NearField& field, const Grid& grid, const Texel& texel, FaceBlock& block) {
+    const Plane plane(block.face);
+    const double extent = 2.0 / grid.edge; // at most
+    const double far = field.rules.far * std::hypot(1.4 * texel.radius, extent);
+    const double reach = field.kernel.reach + texel.radius + extent;
+    for (int j = 0; j < block.rows; ++j) {
+        for (int i = 0; i < block.columns; ++i) {
+            const int row = block.row + j, column = block.column + i;
+            const auto at = static_cast<std::size_t>(block.at(j, i));
+            const V3d middle =
+                plane.at(grid.line(column) + 0.5 * extent, grid.line(row) + 0.5 * extent);
+            const double distance = (middle - texel.centre).length();
+            if (distance < far) {
+                block.near[at] = 1;
+            } else if (distance <= reach) {
+                block.weight[at] = grid.areaOf(row, column) *
+                                   meanOf(field.value, grid, plane, row, column, texel.four);
+            }
+        }
+    }
+}
+
+/// Adds what all edges of the near texels carry.
+void addNear(const Flow& flow, const Grid& grid, FaceBlock& block) {
+    const Plane plane(block.face);
+    // From (s, t) along `right` or `down`; `left` and `other` lie on its two sides.
+    const auto carry = [&](int left, int other, double s, double t, double ds, double dt) {
+        if (!block.isNear(left) && !block.isNear(other)) return;
+        std::vector<Arc> arcs;
+        addCurve([&](double k) { return plane.at(s + k * ds, t + k * dt); }, 0, 1, 1, kLongest,
+                 arcs);
+        if (plane.turned) std::swap(left, other);
+        for (const Arc& arc : arcs) {
+            const double carried = flow.across(arc);
+            block.add(left, carried);
+            block.add(other, -carried);
+        }
+    };
+    const double step = 2.0 / grid.edge;
+    for (int j = 0; j <= block.rows; ++j) {
+        for (int i = 0; i <= block.columns; ++i) {
+            const double s = grid.line(block.column + i), t = grid.line(block.row + j);
+            // Counter-clockwise from right to down: what is farther down lies left of `right`.
+            if (i < block.columns) carry(block.at(j, i), block.at(j - 1, i), s, t, step, 0);
+            if (j < block.rows) carry(block.at(j, i - 1), block.at(j, i), s, t, 0, step);
+        }
+    }
+}
+
+/// A texel is area * (its area-filtered value) + sum of weight * pixel.
+struct CubeWeights {
+    double area = 0;
+    std::vector<FaceBlock> blocks;
+};
+
+CubeWeights weightsOf(const NearField& field, const Grid& grid, const MapExtent& map, int x, int y,
+                      const Footprint& of_map) {
+    CubeWeights weights;
+    const Footprint footprint = footprintOfTexel(of_map, map.layout, map.width, x, y);
+    const Texel texel = texelOf(map, x, y, footprint.scale);
+    if (texel.outline.empty()) { // the whole sphere in one texel
+        weights.area = field.kernel.mass;
+        return weights;
+    }
+    const double across = 2 * std::asin(std::min(1.0, 0.5 * texel.radius));
+    weights.blocks = blocksAbout(grid, texel.centre, field.kernel.reach + across);
+    const bool leaves_area = footprint.scale == 1;
+    const Flow flow(field, map, x, y, footprint, texel,
+                    leaves_area ? Potential::withoutArea : Potential::withArea);
+    double sum = 0;
+    for (FaceBlock& block : weights.blocks) {
+        addFar(field, grid, texel, block);
+        addNear(flow, grid, block);
+        for (int j = 0; j < block.rows && !leaves_area; ++j)
+            for (int i = 0; i < block.columns; ++i)
+                block.add(block.at(j, i), field.kernel.mass / (4 * kPi) *
+                                              grid.areaOf(block.row + j, block.column + i));
+        for (const double w : block.weight)
+            sum += w;
+    }
+    // Between what is near and what is far the sums are of two kinds.
+    if (leaves_area) {
+        weights.area = field.kernel.mass - sum;
+    } else {
+        for (FaceBlock& block : weights.blocks)
+            for (double& w : block.weight)
+                w *= field.kernel.mass / sum;
+    }
+    return weights;
+}
+
+/// A turn or reflection of the cube: the axes in another order, some of them the other way round.
+struct Symmetry {
+    std::array<int, 3> axis;
+    std::array<double, 3> sign;
+
+    V3d operator()(const V3d& d) const {
+        return {sign[0] * d[axis[0]], sign[1] * d[axis[1]], sign[2] * d[axis[2]]};
+    }
+    V3d back(const V3d& d) const {
+        V3d result;
+        for (int k = 0; k < 3; ++k)
+            result[axis[k]] = sign[k] * d[k];
+        return result;
+    }
+};
+
+std::vector<Symmetry> symmetriesOfCube() {
+    std::vector<Symmetry> symmetries;
+    std::array<int, 3> axis{0, 1, 2};
+    do {
+        for (int signs = 0; signs < 8; ++signs) {
+            const auto sign = [&](int k) { return signs >> k & 1 ? -1.0 : 1.0; };
+            symmetries.push_back({axis, {sign(0), sign(1), sign(2)}});
+        }
+    } while (std::ranges::next_permutation(axis).found);
+    return symmetries;
+}
+
+/// A texel of the map and the one whose weights are reckoned for it, to which `symmetry` takes it.
+struct Shared {
+    int key;
+    int x, y;
+    int symmetry;
+};
+
+/// The first texel that any symmetry takes this one to.
+Shared sharedOf(const MapExtent& map, const std::vector<Symmetry>& symmetries, int x, int y) {
+    Shared shared{std::numeric_limits<int>::max(), x, y, 0};
+    const V3d d = *texelDirection(map.layout, map.width, map.height, x + 0.5, y + 0.5);
+    for (std::size_t k = 0; k < symmetries.size(); ++k) {
+        const V3d moved = symmetries[k](d);
+        const V2d p = texelPoint(map.layout, map.width, map.height, moved);
+        const int i = static_cast<int>(p.x), j = static_cast<int>(p.y);
+        if (i < 0 || j < 0 || i >= map.width || j >= map.height) continue;
+        const int key = j * map.width + i;
+        if (key >= shared.key) continue;
+        const auto other = texelDirection(map.layout, map.width, map.height, i + 0.5, j + 0.5);
+        if (!other || (*other - moved).length() > 1e-12) continue;
+        shared.key = key;
+        shared.symmetry = static_cast<int>(k);
+    }
+    return shared;
+}
+
+/// The weighted sum for a texel that `symmetry` takes to the one of the weights.
+V3d weightedSum(const Image& faces, int edge, const CubeWeights& weights, const Symmetry& symmetry,
+                const float* area) {
+    V3d sum(weights.area * area[0], weights.area * area[1], weights.area * area[2]);
+    for (const FaceBlock& block : weights.blocks) {
+        // Where texels (0, 0), (1, 0) and (0, 1) of the face come from.
+        const auto from = [&](double i, double j) {
+            const V3d d =
+                cubeDirection({block.face, (2 * i + 1) / edge - 1, (2 * j + 1) / edge - 1});
+            const CubePoint p = cubePoint(symmetry.back(d));
+            const int column = static_cast<int>(0.5 * (p.s + 1) * edge);
+            return std::ptrdiff_t{3} *
+                   (column + edge * (static_cast<std::ptrdiff_t>(0.5 * (p.t + 1) * edge) +
+                                     std::ptrdiff_t{p.face} * edge));
+        };
+        const std::ptrdiff_t origin = from(0, 0);
+        const std::ptrdiff_t right = edge > 1 ? from(1, 0) - origin : 0;
+        const std::ptrdiff_t down = edge > 1 ? from(0, 1) - origin : 0;
+        const double* weight = block.weight.data();
+        for (int j = 0; j < block.rows; ++j) {
+            const float* pixel =
+                faces.pixels.data() + origin + (block.row + j) * down + block.column * right;
+            for (int i = 0; i < block.columns; ++i, pixel += right, ++weight) {
+                for (int c = 0; c < 3; ++c)
+                    sum[c] += *weight * pixel[c];
+            }
+        }
+    }
+    return sum;
+}
+
+} // namespace
+
+Image nearMapOfCube(const Panorama& cube, const NearField& field, const PrefilterRequest& request,
+                    const Footprint& footprint, int threads, Progress* progress) {
+    const int edge = layoutSize(cube.layout, cube.image.width, cube.image.height).value();
+    if (isCubeFamily(request.layout) && request.layout != Layout::faces) {
+        PrefilterRequest faces = request;
+        faces.layout = Layout::faces;
+        return resample(
+                   {Layout::faces, nearMapOfCube(cube, field, faces, footprint, threads, progress)},
+                   request.layout, request.size, threads)
+            .image;
+    }
+    const Panorama faces = resample(cube, Layout::faces, edge, threads, Enlarging::hold);
+    Grid grid{edge, std::vector<double>(static_cast<std::size_t>(edge) * edge)};
+    for (int j = 0; j < edge; ++j)
+        for (int i = 0; i < edge; ++i)
+            grid.solid_angle[static_cast<std::size_t>(j) * edge + i] =
+                cubeTexelSolidAngle(i, j, edge);
+    const V2i size = layoutExtent(request.layout, request.size);
+    const MapExtent map{request.layout, size.x, size.y, texelAngle(request)};
+    const Image area = resample(cube, request.layout, request.size, threads, Enlarging::hold).image;
+    const std::vector<Symmetry> symmetries = symmetriesOfCube();
+    // By rows, then in order of the texel whose weights they use.
+    std::vector<std::vector<Shared>> rows(static_cast<std::size_t>(size.y));
+    parallelFor(rows.size(), threads, [&](std::size_t row) {
+        const int y = static_cast<int>(row);
+        for (int x = 0; x < size.x; ++x) {
+            if (texelDirection(map.layout, map.width, map.height, x + 0.5, y + 0.5))
+                rows[row].push_back(sharedOf(map, symmetries, x, y));
+        }
+    });
+    std::vector<Shared> texels;
+    for (const std::vector<Shared>& row : rows)
+        texels.insert(texels.end(), row.begin(), row.end());
+    std::ranges::stable_sort(texels, {}, &Shared::key);
+    std::vector<std::size_t> first;
+    for (std::size_t i = 0; i < texels.size(); ++i)
+        if (i == 0 || texels[i].key != texels[i - 1].key) first.push_back(i);
+    first.push_back(texels.size());
+    Panorama result{request.layout, Image(size.x, size.y)};
+    std::ranges::fill(result.image.pixels, 0.0f);
+    std::atomic<std::size_t> finished = 0;
+    const std::size_t groups = first.size() - 1;
+    parallelFor(groups, threads, [&](std::size_t group) {
+        const int key = texels[first[group]].key;
+        const CubeWeights weights =
+            weightsOf(field, grid, map, key % map.width, key / map.width, footprint);
+        for (std::size_t i = first[group]; i < first[group + 1]; ++i) {
+            const Shared& t = texels[i];
+            const V3d value =
+                weightedSum(faces.image, edge, weights,
+                            symmetries[static_cast<std::size_t>(t.symmetry)], area.at(t.x, t.y));
+            for (int c = 0; c < 3; ++c)
+                result.image.at(t.x, t.y)[c] = static_cast<float>(value[c]);
+        }
+        const std::size_t at = finished++, height = rows.size();
+        for (std::size_t row = at * height / groups; row < (at + 1) * height / groups; ++row)
+            if (progress) progress->step();
+    });
+    mergeBorder(result);
+    return std::move(result.image);
+}
+
+} // namespace ibl
