@@ -141,12 +141,13 @@ namespace {
 /// A lat-long for a probe of another layout, with so many rows that reading it takes half of the
 /// error asked for, if that can be.
 Panorama readFor(const Panorama& probe, std::span<const PrefilterRequest> requests, double asked,
-                 int threads) {
+                 bool reference, int threads) {
     const double allowed = 0.5 * asked;
     const auto read = [&](int rows) { return latlongOfMoments(probe, rows, threads); };
     const auto errorOfReading = [&](const Panorama& latlong) {
         double error = 0;
-        for (const ReadingError& e : readingErrors(latlong.image, requests, threads))
+        for (const ReadingError& e :
+             readingErrors(latlong.image, probe, requests, reference, threads))
             error = std::max(error, e.bound);
         return error;
     };
@@ -171,8 +172,11 @@ ProbeToPrefilter toPrefilter(Session& session, Panorama&& probe,
                              std::span<const PrefilterRequest> requests,
                              const QualityOptions& quality) {
     if (probe.layout == Layout::latlong) return {std::move(probe), std::nullopt};
-    Panorama latlong = session.stage(
-        "resample", [&] { return readFor(probe, requests, errorOf(quality), session.threads()); });
+    Panorama latlong = session.stage("resample", [&] {
+        return readFor(probe, requests, errorOf(quality),
+                       quality.quality == Quality::reference && !quality.max_error,
+                       session.threads());
+    });
     return {std::move(latlong), std::move(probe)};
 }
 

@@ -5,12 +5,12 @@
 #include "panorama/conventions.h"
 #include "panorama/layouts.h"
 #include "panorama/resample.h"
+#include "panorama/square_maps.h"
 
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -246,19 +246,49 @@ struct Shared {
     int symmetry;
 };
 
+/// Whether the symmetry takes texel (x, y) to (i, j), its shape too: centres alone may meet by
+/// chance.
+bool takesTo(const MapExtent& map, const Symmetry& symmetry, int x, int y, int i, int j) {
+    constexpr double kSame = 1e-12;
+    const auto place = [&](int column, int row, const V2d& off) {
+        return texelDirection(map.layout, map.width, map.height, column + 0.5 + off.x,
+                              row + 0.5 + off.y);
+    };
+    const auto is = [&](const V3d& d, const V2d& off) {
+        const auto other = place(i, j, off);
+        return other && (*other - d).length() < kSame;
+    };
+    if (!is(symmetry(*place(x, y, V2d(0))), V2d(0))) return false;
+    constexpr double kA = 0.3, kB = 0.1; // of a texel, off its axes and its diagonals
+    // A corner texel cut off by a ball map's rim belongs to one of its neighbours (square_maps.h),
+    // which are mirrored but not exchanged.
+    const bool may_exchange = !isBallMap(map.layout);
+    for (const V2d& off : {V2d(kA, kB), V2d(-kB, kA)}) {
+        const auto d = place(x, y, off);
+        if (!d) return false;
+        const V3d moved = symmetry(*d);
+        bool found = false;
+        for (const double a : {-1.0, 1.0}) {
+            for (const double b : {-1.0, 1.0}) {
+                found = found || is(moved, V2d(a * off.x, b * off.y)) ||
+                        (may_exchange && is(moved, V2d(a * off.y, b * off.x)));
+            }
+        }
+        if (!found) return false;
+    }
+    return true;
+}
+
 /// The first texel that any symmetry takes this one to.
 Shared sharedOf(const MapExtent& map, const std::vector<Symmetry>& symmetries, int x, int y) {
-    Shared shared{std::numeric_limits<int>::max(), x, y, 0};
+    Shared shared{y * map.width + x, x, y, 0}; // symmetry 0 leaves all as it is
     const V3d d = *texelDirection(map.layout, map.width, map.height, x + 0.5, y + 0.5);
-    for (std::size_t k = 0; k < symmetries.size(); ++k) {
-        const V3d moved = symmetries[k](d);
-        const V2d p = texelPoint(map.layout, map.width, map.height, moved);
+    for (std::size_t k = 1; k < symmetries.size(); ++k) {
+        const V2d p = texelPoint(map.layout, map.width, map.height, symmetries[k](d));
         const int i = static_cast<int>(p.x), j = static_cast<int>(p.y);
         if (i < 0 || j < 0 || i >= map.width || j >= map.height) continue;
         const int key = j * map.width + i;
-        if (key >= shared.key) continue;
-        const auto other = texelDirection(map.layout, map.width, map.height, i + 0.5, j + 0.5);
-        if (!other || (*other - moved).length() > 1e-12) continue;
+        if (key >= shared.key || !takesTo(map, symmetries[k], x, y, i, j)) continue;
         shared.key = key;
         shared.symmetry = static_cast<int>(k);
     }
@@ -297,6 +327,13 @@ V3d weightedSum(const Image& faces, int edge, const CubeWeights& weights, const 
 }
 
 } // namespace
+
+bool seesOwnTexels(const Panorama& probe, const Lobe& lobe) {
+    constexpr double kWidest = 0.03, kTexels = 8;
+    if (!isCubeFamily(probe.layout) || lobe.kernel == Kernel::charlie) return false;
+    const int edge = layoutSize(probe.layout, probe.image.width, probe.image.height).value();
+    return lobeWidth(lobe) < std::min(kWidest, kTexels * 0.5 * kPi / edge);
+}
 
 Image nearMapOfCube(const Panorama& cube, const NearField& field, const PrefilterRequest& request,
                     const Footprint& footprint, int threads, Progress* progress) {

@@ -1,6 +1,7 @@
 #include "convolve/plan.h"
 
 #include "convolve/error_bound.h"
+#include "convolve/near_cube.h"
 #include "convolve/texels.h"
 #include "core/parallel.h"
 #include "panorama/conventions.h"
@@ -18,9 +19,6 @@ namespace {
 /// needs more has a horizon, against which only peaks help; a narrow one is worth 3 s of one core.
 constexpr int kMostDegree = 768;
 constexpr int kMostDegreeOfNarrow = 1536;
-/// Degree of Method::narrow. With 768 or 1024 the near part reaches less far, but takes the same
-/// time within a tenth, for twice and three times the memory.
-constexpr int kNarrowDegree = 512;
 /// More peaks than these cost more than a second analysis.
 constexpr int kManyPeaks = 64;
 /// Coefficients known beyond it, from which the tail's envelope is read.
@@ -124,7 +122,7 @@ double allowedNorm(const ProbeStatistics& probe, const PrefilterRequest& request
 namespace {
 
 Plan planTogether(const ProbeStatistics& probe, std::span<const PrefilterRequest> requests,
-                  double max_error, int probe_width, int threads) {
+                  double max_error, int probe_width, const Panorama* source, int threads) {
     Plan plan;
     plan.requests.resize(requests.size());
     std::iota(plan.requests.begin(), plan.requests.end(), std::size_t{0});
@@ -152,6 +150,7 @@ Plan planTogether(const ProbeStatistics& probe, std::span<const PrefilterRequest
             const int most = mostDegree(requests[i].lobe);
             degrees[i] = leastDegree(plan.lobes[i].k, most, allowed[i], energy);
             if (degrees[i] > most && isNarrow(requests[i].lobe)) degrees[i] = -1;
+            if (source && seesOwnTexels(*source, requests[i].lobe)) degrees[i] = -1;
             if (degrees[i] > most)
                 over[i] = tailMaximum(plan.lobes[i].k)[most] * std::sqrt(energy[0]) / allowed[i];
         }
@@ -169,7 +168,8 @@ Plan planTogether(const ProbeStatistics& probe, std::span<const PrefilterRequest
         lobe.degree = std::min(chosen[i], mostDegree(requests[i].lobe));
         if (chosen[i] < 0) {
             lobe.method = Method::narrow;
-            lobe.degree = kNarrowDegree;
+            const bool own = source && seesOwnTexels(*source, requests[i].lobe);
+            lobe.degree = own ? kDegreeOfTails : kNarrowDegree;
             lobe.k.resize(static_cast<std::size_t>(lobe.degree + kTailBands));
             lobe.allowed = allowed[i] / std::sqrt(std::max(probe.energy, 1e-300));
         } else {
@@ -183,9 +183,9 @@ Plan planTogether(const ProbeStatistics& probe, std::span<const PrefilterRequest
 
 std::vector<Plan> makePlans(const ProbeStatistics& probe,
                             std::span<const PrefilterRequest> requests, double max_error,
-                            int probe_width, int threads) {
+                            int probe_width, const Panorama* source, int threads) {
     const auto together = [&](std::span<const PrefilterRequest> some) {
-        return planTogether(probe, some, max_error, probe_width, threads);
+        return planTogether(probe, some, max_error, probe_width, source, threads);
     };
     const Plan all = together(requests);
     if (all.peaks <= kManyPeaks) return {all};

@@ -25,6 +25,14 @@ enum class Method {
     narrow,    ///< the lobe's tail in harmonics, its core in space (narrow.h)
 };
 
+/// Degree of the far part of Method::narrow. With 768 or 1024 the near part reaches less far, but
+/// takes the same time within a tenth, for twice and three times the memory.
+inline constexpr int kNarrowDegree = 512;
+
+/// The same of lobes that see a cube's own texels (near_cube.h): what is read into a lat-long is
+/// exact to lower degrees than that has rows.
+inline constexpr int kDegreeOfTails = 64;
+
 struct LobePlan {
     Method method = Method::harmonics;
     int degree = 0;
@@ -41,12 +49,12 @@ struct Plan {
     std::vector<LobePlan> lobes; ///< of each of them
 };
 
-/// One for all requests, or two: a wide lobe's horizon may need a thousand peaks, which at all of a
-/// large map's texels, for a narrower lobe that needs none, take a hundred times as long as an
-/// analysis of their own.
+/// `source` is what the lat-long was read from, if it was. One for all requests, or two: a wide
+/// lobe's horizon may need a thousand peaks, which at all of a large map's texels, for a narrower
+/// lobe that needs none, take a hundred times as long as an analysis of their own.
 std::vector<Plan> makePlans(const ProbeStatistics& probe,
                             std::span<const PrefilterRequest> requests, double max_error,
-                            int probe_width, int threads);
+                            int probe_width, const Panorama* source, int threads);
 
 /// Least degree, up to `most`, whose truncation bound is at most `allowed`; `energy_beyond(B)` is
 /// the probe's energy beyond degree B. `most` + 1 when there is none.

@@ -163,9 +163,13 @@ PrefilterResult directSum(const Engine& engine, const PrefilterRequest& request,
     if (footprint.scale > 0) {
         const NearRules& rules = nearRules(0);
         const NearKernel whole(request.lobe, 0, 0);
-        result.map.image = nearMap(engine.probe.panorama, areasFor(engine.probe, request.lobe),
-                                   makeNearField(whole, rules, probe.width, probe.height, threads),
-                                   request, footprint, threads, &progress);
+        const NearField field = makeNearField(whole, rules, probe.width, probe.height, threads);
+        const Panorama* source = engine.probe.source;
+        result.map.image =
+            source && seesOwnTexels(*source, request.lobe)
+                ? nearMapOfCube(*source, field, request, footprint, threads, &progress)
+                : nearMap(engine.probe.panorama, areasFor(engine.probe, request.lobe), field,
+                          request, footprint, threads, &progress);
         if (!engine.probe.negative)
             for (float& p : result.map.image.pixels)
                 p = std::max(0.0f, p);
@@ -363,9 +367,11 @@ void requireReachable(std::span<const Plan> plans, double max_error) {
 }
 
 /// Adds to the results' errors what reading the probe into this lat-long left.
-void addReading(const Image& latlong, std::span<const PrefilterRequest> requests, int threads,
+void addReading(const Image& latlong, const Panorama& source,
+                std::span<const PrefilterRequest> requests, bool reference, int threads,
                 std::vector<PrefilterResult>& results) {
-    const std::vector<ReadingError> errors = readingErrors(latlong, requests, threads);
+    const std::vector<ReadingError> errors =
+        readingErrors(latlong, source, requests, reference, threads);
     for (std::size_t i = 0; i < errors.size(); ++i) {
         results[i].error_bound += errors[i].bound;
         results[i].error_estimate = std::hypot(results[i].error_estimate, errors[i].estimate);
@@ -406,14 +412,16 @@ std::vector<PrefilterResult> prefilter(const Panorama& latlong,
                              : directSum(engine, requests[i], options.threads, progress);
             results[i].seconds_analysis = seconds_measuring;
         }
-        if (options.source) addReading(latlong.image, requests, options.threads, results);
+        if (options.source)
+            addReading(latlong.image, *options.source, requests, options.reference, options.threads,
+                       results);
         return results;
     }
     PrefilterOptions planned = options;
     planned.max_error = std::max(0.25 * options.max_error,
                                  options.max_error - kFootprintError - 2 * kFloatRounding);
-    const std::vector<Plan> plans =
-        makePlans(statistics, requests, planned.max_error, latlong.image.width, options.threads);
+    const std::vector<Plan> plans = makePlans(statistics, requests, planned.max_error,
+                                              latlong.image.width, options.source, options.threads);
     requireReachable(plans, options.max_error);
     for (const Plan& plan : plans) {
         const Engine engine = analyseProbe(latlong, statistics, plan, options);
@@ -428,7 +436,9 @@ std::vector<PrefilterResult> prefilter(const Panorama& latlong,
             result.seconds_analysis = seconds_measuring + engine.seconds;
         }
     }
-    if (options.source) addReading(latlong.image, requests, options.threads, results);
+    if (options.source)
+        addReading(latlong.image, *options.source, requests, options.reference, options.threads,
+                   results);
     return results;
 }
 

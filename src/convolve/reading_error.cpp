@@ -1,6 +1,9 @@
 #include "convolve/reading_error.h"
 
 #include "convolve/analysis.h"
+#include "convolve/narrow.h"
+#include "convolve/near_cube.h"
+#include "convolve/plan.h"
 #include "convolve/probe_scale.h"
 #include "convolve/texels.h"
 #include "core/parallel.h"
@@ -9,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace ibl {
@@ -42,20 +46,34 @@ Harmonics harmonicsOf(const Image& image, double scale, int degree, int threads)
     return analyse(analyseRows(image, scale, kNoThreshold, degree, threads), degree, threads);
 }
 
-/// How much of each degree a map shows.
+/// How much of each degree a map shows, not exceeded: the lobe's coefficients times the envelope of
+/// the mean over a texel, of half the width that the map's have about, as the smallest of a cube's
+/// are.
 struct Shown {
-    /// Not exceeded: the lobe's coefficients times the envelope of the mean over a texel, of half
-    /// the width that the map's have about, as the smallest of a cube's are.
-    std::vector<double> most;
+    std::vector<double> all;
+    std::vector<double> read; ///< of what comes from the lat-long, perhaps of fewer degrees
+    bool ends = false;        ///< with the last of them; else all beyond show that at most
     int whole = 0; ///< up to this degree texels take nothing away: the map's norm is summed so far
 };
 
-Shown shownBy(const PrefilterRequest& request, int bands) {
-    Shown shown{zonalCoefficients(request.lobe, bands)};
+Shown shownBy(const PrefilterRequest& request, int bands, bool own_texels) {
+    Shown shown{zonalCoefficients(request.lobe, bands), {}, own_texels};
+    shown.read = shown.all;
+    if (own_texels) {
+        // The tail alone, at its largest.
+        const int degree = std::min(kDegreeOfTails, bands - 1);
+        shown.read =
+            splitLobe(request.lobe, shown.all, degree, std::numeric_limits<double>::infinity()).k;
+        shown.read.resize(static_cast<std::size_t>(degree) + 1);
+    }
     const double texel = texelAngle(request);
     const double side = texel * footprintOf(request.lobe, texel, kAnyDegree).scale;
-    for (int l = 1; l < bands; ++l)
-        shown.most[l] = std::abs(shown.most[l]) * std::min(1.0, 4 / std::max(1e-300, l * side));
+    for (std::vector<double>* k : {&shown.all, &shown.read}) {
+        for (std::size_t l = 1; l < k->size(); ++l) {
+            (*k)[l] = std::abs((*k)[l]) *
+                      std::min(1.0, 4 / std::max(1e-300, static_cast<double>(l) * side));
+        }
+    }
     shown.whole = side * bands < 1 ? bands : static_cast<int>(1 / side);
     return shown;
 }
@@ -70,15 +88,19 @@ int degreeOf(const std::vector<double>& shown) {
 
 } // namespace
 
-std::vector<ReadingError> readingErrors(const Image& latlong,
-                                        std::span<const PrefilterRequest> requests, int threads) {
+std::vector<ReadingError> readingErrors(const Image& latlong, const Panorama& source,
+                                        std::span<const PrefilterRequest> requests, bool reference,
+                                        int threads) {
     const int bands = std::clamp(latlong.height, kLeastDegree + 1, 4096);
     std::vector<Shown> shown(requests.size());
     int degree = -1;
     for (std::size_t i = 0; i < requests.size(); ++i) {
-        if (isMirror(requests[i].lobe)) continue;
-        shown[i] = shownBy(requests[i], bands);
-        degree = std::max(degree, degreeOf(shown[i].most));
+        const Lobe& lobe = requests[i].lobe;
+        if (isMirror(lobe)) continue;
+        const bool own = seesOwnTexels(source, lobe);
+        if (own && (reference || lobe.kernel != Kernel::ggx)) continue; // no harmonics
+        shown[i] = shownBy(requests[i], bands, own);
+        degree = std::max(degree, degreeOf(shown[i].read));
     }
     std::vector<ReadingError> errors(requests.size());
     if (degree < 0) return errors;
@@ -97,18 +119,20 @@ std::vector<ReadingError> readingErrors(const Image& latlong,
         left -= s;
     left = std::max(0.0, left);
     for (std::size_t i = 0; i < requests.size(); ++i) {
-        const std::vector<double>& most = shown[i].most;
-        if (most.empty()) continue;
+        const std::vector<double>&all = shown[i].all, &read = shown[i].read;
+        if (read.empty()) continue;
         double norm = 0, sum = 0, at_point = 0;
         for (int l = 0; l <= std::min(degree, shown[i].whole); ++l)
-            norm += most[l] * most[l] * probe[l];
-        for (int l = 0; l <= degree; ++l) {
-            const double square = most[l] * most[l] * power[l];
+            norm += all[l] * all[l] * probe[l];
+        const int last = std::min(degree, static_cast<int>(read.size()) - 1);
+        for (int l = 0; l <= last; ++l) {
+            const double square = read[l] * read[l] * power[l];
             sum += square;
             at_point += std::sqrt((2 * l + 1) / (4 * kPi) * square);
         }
         if (norm <= 0) continue;
-        const double between = std::sqrt((sum + most[degree] * most[degree] * left) / norm);
+        const double beyond = shown[i].ends ? 0 : read[last];
+        const double between = std::sqrt((sum + beyond * beyond * left) / norm);
         errors[i].bound = between / kLeastFall;
         errors[i].worst = at_point / std::sqrt(probe[0] / (36 * kPi) + 1e-300) / kLeastFall;
         errors[i].estimate = between / kFall;

@@ -23,9 +23,12 @@ struct ReadingError {
 /// Of each request, measured on the lat-long alone, of even width and height: by how much the map
 /// would change had the probe been read into half as many rows, divided by what the error falls by.
 /// In harmonics, as far as the lobe and the map's texels see them, and beyond that by the energy
-/// that is left. Mirrors: none, which are filtered from the probe itself. Throws Error (input) on
+/// that is left. Mirrors: none, which are filtered from the probe itself. Of lobes that see its own
+/// texels (near_cube.h) only what harmonics hold comes from the lat-long, and with `reference`
+/// nothing. Throws Error (input) on
 /// values that are not finite.
-std::vector<ReadingError> readingErrors(const Image& latlong,
-                                        std::span<const PrefilterRequest> requests, int threads);
+std::vector<ReadingError> readingErrors(const Image& latlong, const Panorama& source,
+                                        std::span<const PrefilterRequest> requests, bool reference,
+                                        int threads);
 
 } // namespace ibl
