@@ -91,7 +91,7 @@ std::vector<double> farCoefficients(std::vector<double> k, const NearKernel& nea
 
 LobeSplit splitLobe(const Lobe& lobe, const std::vector<double>& k, int degree, double allowed) {
     // What lies beyond the reach is off by its distance from the pixels that it is counted in.
-    const double negligible = 0.2 * allowed;
+    const double negligible = kBeyondReach * allowed;
     if (lobe.kernel != Kernel::ggx) return {NearKernel(lobe, 0, negligible), 0, {}};
     for (double widths = 2.5;; widths += 0.25) {
         const double u = 2 * std::pow(degree / widths, 2);

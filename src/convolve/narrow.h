@@ -62,6 +62,10 @@ struct LobeSplit {
     std::vector<double> k; ///< of K_far, beyond `degree` too
 };
 
+/// Of what may be left, the lobe's mass beyond the near part's reach: it counts as lying within,
+/// which moves twice as much.
+inline constexpr double kBeyondReach = 0.05;
+
 /// Splits the lobe of coefficients k, of which there are more than `degree`, such that K_far cut at
 /// `degree` leaves at most `allowed`, the largest coefficient beyond. Lobes without a tail have no
 /// K_far.

@@ -156,6 +156,15 @@ const Panorama& areasFor(const Probe& probe, const Lobe& lobe) {
     return probe.source && narrower ? *probe.source : probe.panorama;
 }
 
+/// What rounding to float leaves of the brightest texel, beside the map's mean.
+double roundingOfBrightest(const Image& map, const MapNorm& norm) {
+    float most = 0;
+    for (const float p : map.pixels)
+        most = std::max(most, std::abs(p));
+    const double mean = norm.absolute() / (12 * kPi);
+    return kFloatRounding * (mean > 0 ? std::max(1.0, most / mean) : 1);
+}
+
 /// Rules for the near part of a lobe. A coarse cube's long edges, which are few, are worth the
 /// second ones: the first left 5.3e-5 of faces of 16 with Phong 3000.
 const NearRules& nearRulesFor(const Probe& probe, const Lobe& lobe, double max_error) {
@@ -202,7 +211,7 @@ PrefilterResult directSum(const Engine& engine, const PrefilterRequest& request,
         MapNorm norm;
         fillMap(request, footprint, parts, threads, result.map, norm, &progress);
         result.error_bound = result.error_estimate = kFloatRounding;
-        result.worst_bound = kFloatRounding;
+        result.worst_bound = roundingOfBrightest(result.map.image, norm);
     }
     result.seconds_spatial = watch.seconds();
     return result;
@@ -307,11 +316,14 @@ PrefilterResult byHarmonics(const Engine& engine, const PrefilterRequest& reques
     const RelativeError relative_error =
         errorOfHarmonics(engine, request, footprint, error, norm, max_error, threads, result.map);
     const bool by_points = norm.root() > 0 && (footprint.samples > 1 || isBallMap(request.layout));
-    const double within = by_points ? kFootprintError : 0;
+    double within = by_points ? kFootprintError : 0;
+    if (!engine.peaks.empty() && isSquareMap(request.layout) && texel > kFewTexels)
+        within = std::max(within, kPeakInSquareTexel);
     result.error_bound = std::hypot(relative_error.bound + within, outlines_error);
     result.error_estimate = std::hypot(relative_error.estimate, within / 3, outlines_error / 3);
     const double mean = norm.absolute() * engine.probe.scale / (12 * kPi);
-    result.worst_bound = relative(error.pointwise, mean) + 10 * (within + outlines_error);
+    result.worst_bound = relative(error.pointwise, mean) + 10 * (within + outlines_error) +
+                         roundingOfBrightest(result.map.image, norm);
     result.seconds_spatial = watch.seconds() - result.seconds_synthesis;
     return result;
 }
@@ -345,8 +357,10 @@ PrefilterResult inTwoParts(const Engine& engine, const PrefilterRequest& request
         result.error_bound = far.bound + kFootprintError;
         result.error_estimate = far.estimate;
     }
-    result.error_bound = std::hypot(result.error_bound, rules.error);
-    result.error_estimate = std::hypot(result.error_estimate, rules.error / 3);
+    // Half of the error is what may be left (allowedNorm).
+    const double beyond_reach = 2 * kBeyondReach * 0.5 * max_error;
+    result.error_bound = std::hypot(result.error_bound, rules.error) + beyond_reach;
+    result.error_estimate = std::hypot(result.error_estimate, rules.error / 3, beyond_reach / 3);
     result.seconds_spatial = watch.seconds() - result.seconds_synthesis;
     return result;
 }

@@ -46,6 +46,10 @@ double leastOutline(const Lobe& lobe);
 /// lobes with horizons and without; of a texel ten times as much.
 inline constexpr double kFootprintError = 5e-7;
 
+/// The same of a lone bright pixel in a ball map or an octahedral map whose texels are so large,
+/// radians: 1.6e-5 was measured, of a mirror ball of 2 x 2.
+inline constexpr double kPeakInSquareTexel = 2e-5, kFewTexels = 0.3;
+
 /// The footprint of one texel: the map's, but for ball maps, whose texels are the longer the nearer
 /// they are to the rim.
 Footprint footprintOfTexel(const Footprint& of_map, Layout layout, int size, int x, int y);
