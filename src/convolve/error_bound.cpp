@@ -72,6 +72,14 @@ RelativeError relativeError(const SpectrumError& error, double size, std::size_t
             relative(likely, size)};
 }
 
+double roundingOfBrightest(const Image& map, const MapNorm& norm) {
+    float most = 0;
+    for (const float p : map.pixels)
+        most = std::max(most, std::abs(p));
+    const double mean = norm.absolute() / (12 * kPi);
+    return kFloatRounding * (mean > 0 ? std::max(1.0, most / mean) : 1);
+}
+
 double relative(double norm, double size) {
     return size > 0 ? std::hypot(norm / size, kFloatRounding) : 0;
 }

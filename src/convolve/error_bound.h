@@ -1,6 +1,8 @@
 // What a result may be off by, and what it probably is.
 #pragma once
 
+#include "image/image.h"
+
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -80,6 +82,9 @@ inline constexpr double kRingTimes = 8;
 /// point.
 RelativeError relativeError(const SpectrumError& error, double size, std::size_t texels,
                             const WorstTexels& worst = {});
+
+/// What rounding to float leaves of the brightest texel, beside the map's mean.
+double roundingOfBrightest(const Image& map, const MapNorm& norm);
 
 /// A norm over the sphere as relative RMSE of a map, rounding included.
 double relative(double norm, double size);

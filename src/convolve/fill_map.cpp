@@ -1,6 +1,7 @@
 #include "convolve/fill_map.h"
 
 #include "core/parallel.h"
+#include "panorama/layouts.h"
 #include "panorama/resample.h"
 
 #include <algorithm>
@@ -53,6 +54,13 @@ void fillRow(const PrefilterRequest& request, const Footprint& footprint, const 
 }
 
 } // namespace
+
+PrefilterResult emptyResult(const PrefilterRequest& request) {
+    PrefilterResult result;
+    const V2i extent = layoutExtent(request.layout, request.size);
+    result.map = {request.layout, Image(extent.x, extent.y)};
+    return result;
+}
 
 void fillMap(const PrefilterRequest& request, const Footprint& footprint, const Ingredients& parts,
              int threads, Panorama& map, MapNorm& norm, Progress* progress) {

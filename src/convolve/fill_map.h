@@ -23,6 +23,9 @@ struct Ingredients {
     const Image* map = nullptr; ///< added to all that
 };
 
+/// A result whose map has the request's layout and size, to be filled.
+PrefilterResult emptyResult(const PrefilterRequest& request);
+
 /// Fills the map, of the request's layout and size, with the means over its texels' footprints, and
 /// adds them to `norm`. Progress is told a step for each row.
 void fillMap(const PrefilterRequest& request, const Footprint& footprint, const Ingredients& parts,

@@ -1,26 +1,23 @@
 #include "convolve/prefilter.h"
 
 #include "convolve/analysis.h"
-#include "convolve/direct.h"
+#include "convolve/direct_map.h"
 #include "convolve/error_bound.h"
 #include "convolve/evaluate.h"
 #include "convolve/fill_map.h"
-#include "convolve/near_cube.h"
-#include "convolve/near_map.h"
 #include "convolve/peak_map.h"
 #include "convolve/plan.h"
 #include "convolve/reading_error.h"
 #include "convolve/synthesis.h"
 #include "convolve/texels.h"
 #include "core/error.h"
-#include "core/parallel.h"
+#include "core/stopwatch.h"
 #include "panorama/conventions.h"
 #include "panorama/layouts.h"
 #include "panorama/resample.h"
 #include "panorama/square_maps.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -29,16 +26,6 @@
 
 namespace ibl {
 namespace {
-
-class Stopwatch {
-public:
-    double seconds() const {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    }
-
-private:
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 void checkRequests(const Image& probe, std::span<const PrefilterRequest> requests,
                    const PrefilterOptions& options) {
@@ -57,17 +44,9 @@ void checkRequests(const Image& probe, std::span<const PrefilterRequest> request
     }
 }
 
-struct Probe {
-    const Panorama& panorama;
-    const Panorama* source; ///< what it was read from, if it was
-    const Image& image;     ///< its
-    double scale;
-    bool negative;
-};
-
 /// All that the requests share.
 struct Engine {
-    Probe probe;
+    PlacedProbe probe;
     ProbeStatistics statistics;
     Plan plan;
     std::vector<Peak> peaks;
@@ -125,13 +104,6 @@ Engine analyseProbe(const Panorama& panorama, ProbeStatistics statistics, Plan p
     return engine;
 }
 
-PrefilterResult emptyResult(const PrefilterRequest& request) {
-    PrefilterResult result;
-    const V2i extent = layoutExtent(request.layout, request.size);
-    result.map = {request.layout, Image(extent.x, extent.y)};
-    return result;
-}
-
 PrefilterResult areaFiltered(const Panorama& probe, const PrefilterRequest& request, int threads) {
     const Stopwatch watch;
     PrefilterResult result;
@@ -141,111 +113,6 @@ PrefilterResult areaFiltered(const Panorama& probe, const PrefilterRequest& requ
     result.error_bound = result.error_estimate = kFloatRounding;
     result.worst_bound = kFloatRounding;
     return result;
-}
-
-bool ownTexels(const Probe& probe, const Lobe& lobe) {
-    return probe.source && seesOwnTexels(*probe.source, lobe);
-}
-
-/// What texels' own means are of, for nearMap: of lobes too narrow for the lat-long's pixels, which
-/// see the light that is moved between those, the probe that it was read from. (Of faces of 64 of a
-/// night, 2048 rows: a lobe half as wide as a pixel would be off by 4e-4 and not 1.2e-4, GGX 0.003
-/// is 5e-4 from the mirror and not 7e-3.)
-const Panorama& areasFor(const Probe& probe, const Lobe& lobe) {
-    const bool narrower = lobeWidth(lobe) < 0.25 * kPi / probe.image.height;
-    return probe.source && narrower ? *probe.source : probe.panorama;
-}
-
-/// What rounding to float leaves of the brightest texel, beside the map's mean.
-double roundingOfBrightest(const Image& map, const MapNorm& norm) {
-    float most = 0;
-    for (const float p : map.pixels)
-        most = std::max(most, std::abs(p));
-    const double mean = norm.absolute() / (12 * kPi);
-    return kFloatRounding * (mean > 0 ? std::max(1.0, most / mean) : 1);
-}
-
-/// Rules for the near part of a lobe. A coarse cube's long edges, which are few, are worth the
-/// second ones: the first left 5.3e-5 of faces of 16 with Phong 3000.
-const NearRules& nearRulesFor(const Probe& probe, const Lobe& lobe, double max_error) {
-    const bool coarse =
-        ownTexels(probe, lobe) &&
-        layoutSize(probe.source->layout, probe.source->image.width, probe.source->image.height)
-                .value() < 100;
-    return nearRules(coarse ? std::min(max_error, 1e-5) : max_error);
-}
-
-/// The means of what the kernel gathers from the probe, by its pixels' outlines.
-Image nearMapOf(const Probe& probe, const NearKernel& kernel, const NearRules& rules,
-                const PrefilterRequest& request, const Footprint& footprint, int threads,
-                Progress* progress = nullptr) {
-    const NearField field =
-        makeNearField(kernel, rules, probe.image.width, probe.image.height, threads);
-    if (ownTexels(probe, request.lobe))
-        return nearMapOfCube(*probe.source, field, request, footprint, threads, progress);
-    return nearMap(probe.panorama, areasFor(probe, request.lobe), field, request, footprint,
-                   threads, progress);
-}
-
-/// The sum over all pixels: by points in the texel, or where the lobe is too narrow for them by the
-/// outlines of texel and pixels.
-PrefilterResult directSum(const Engine& engine, const PrefilterRequest& request, int threads,
-                          Progress& progress) {
-    const Stopwatch watch;
-    PrefilterResult result = emptyResult(request);
-    const Image& probe = engine.probe.image;
-    const Footprint footprint = footprintOf(request.lobe, texelAngle(request), kAnyDegree);
-    if (footprint.scale > 0) {
-        const NearRules& rules = nearRules(0);
-        const NearKernel whole(request.lobe, 0, 0);
-        result.map.image =
-            nearMapOf(engine.probe, whole, rules, request, footprint, threads, &progress);
-        if (!engine.probe.negative)
-            for (float& p : result.map.image.pixels)
-                p = std::max(0.0f, p);
-        result.error_bound = result.error_estimate = rules.error;
-    } else {
-        const DirectSum direct = makeDirectSum(request.lobe, probe, engine.probe.scale);
-        Ingredients parts{engine.probe.scale, engine.probe.negative};
-        parts.direct = &direct;
-        MapNorm norm;
-        fillMap(request, footprint, parts, threads, result.map, norm, &progress);
-        result.error_bound = result.error_estimate = kFloatRounding;
-        result.worst_bound = roundingOfBrightest(result.map.image, norm);
-    }
-    result.seconds_spatial = watch.seconds();
-    return result;
-}
-
-/// Whether the direct sum takes 12 s of one core or less for that many of the map's texels.
-bool isSummedSoon(const PrefilterRequest& request, double texels, const Image& probe) {
-    // Of a texel and a pixel, as measured: by a point and by outlines, of rings besides.
-    constexpr double kPoint = 0.12e-6, kPointOfRing = 0.25e-6;
-    constexpr double kOutlines = 0.6e-6, kOutlinesOfRing = 6e-6;
-    const bool is_ring = request.lobe.kernel == Kernel::charlie;
-    const bool by_outlines = footprintOf(request.lobe, texelAngle(request), kAnyDegree).scale > 0;
-    const double each =
-        by_outlines ? (is_ring ? kOutlinesOfRing : kOutlines) : (is_ring ? kPointOfRing : kPoint);
-    return each * texels * probe.width * probe.height <= 12;
-}
-
-/// Sums some texels directly, of a map whose texels are their centres' values.
-void sumDirectly(const Engine& engine, const PrefilterRequest& request,
-                 const std::vector<V2i>& texels, int threads, Panorama& map) {
-    const DirectSum direct = makeDirectSum(request.lobe, engine.probe.image, engine.probe.scale);
-    Image& image = map.image;
-    parallelFor(texels.size(), threads, [&](std::size_t i) {
-        const V2i at = texels[i];
-        const V2d p = latlongPoint(
-            *texelDirection(request.layout, image.width, image.height, at.x + 0.5, at.y + 0.5));
-        double sum[3] = {0, 0, 0};
-        addDirect(direct, makeAxis(p.x, p.y), sum);
-        for (int c = 0; c < 3; ++c) {
-            const double value = sum[c] / engine.probe.scale;
-            image.at(at.x, at.y)[c] =
-                static_cast<float>(engine.probe.negative ? value : std::max(0.0, value));
-        }
-    });
 }
 
 /// The relative error of a map by harmonics. Where texels whose horizons run along pixels' edges
@@ -262,10 +129,10 @@ RelativeError errorOfHarmonics(const Engine& engine, const PrefilterRequest& req
     const RelativeError all = relativeError(error, size, norm.texels(), {along.share, times});
     const double count = static_cast<double>(along.at.size());
     if (all.bound <= max_error || footprint.scale > 0 ||
-        !isSummedSoon(request, count, engine.probe.image)) {
+        !isSummedSoon(engine.probe, request, count)) {
         return all;
     }
-    sumDirectly(engine, request, along.at, threads, map);
+    sumDirectly(engine.probe, request, along.at, threads, map);
     return elsewhere;
 }
 
@@ -437,7 +304,7 @@ std::vector<PrefilterResult> prefilter(const Panorama& latlong,
             results[i] = isMirror(requests[i].lobe)
                              ? areaFiltered(options.source ? *options.source : latlong, requests[i],
                                             options.threads)
-                             : directSum(engine, requests[i], options.threads, progress);
+                             : directMap(engine.probe, requests[i], options.threads, progress);
             results[i].seconds_analysis = seconds_measuring;
         }
         if (options.source)
@@ -458,8 +325,8 @@ std::vector<PrefilterResult> prefilter(const Panorama& latlong,
             PrefilterResult& result = results[plan.requests[k]];
             result = byMethod(engine, request, plan.lobes[k], planned);
             if (result.error_bound > options.max_error &&
-                isSummedSoon(request, texelCount(request), latlong.image)) {
-                result = directSum(engine, request, options.threads, progress);
+                isSummedSoon(engine.probe, request, texelCount(request))) {
+                result = directMap(engine.probe, request, options.threads, progress);
             }
             result.seconds_analysis = seconds_measuring + engine.seconds;
         }

@@ -75,8 +75,23 @@ TEST(NearCube, IsWhatAFineLatlongGives) {
                 << layoutName(request.layout) << " kernel " << static_cast<int>(lobe.kernel) << " "
                 << lobe.parameter;
             EXPECT_LT(own.error_bound, 1e-5);
+            PrefilterOptions reference;
+            reference.reference = true;
+            reference.source = &cube;
+            EXPECT_LT(difference(own.map, prefilter(latlong, {&request, 1}, reference)[0].map),
+                      5e-6)
+                << layoutName(request.layout) << " " << lobe.parameter;
         }
     }
+    // Where texels are their centres' values too.
+    const PrefilterRequest fine{kLobes[0], Layout::faces, 100};
+    PrefilterOptions reference;
+    reference.reference = true;
+    reference.source = &cube;
+    const Panorama coarse_latlong = latlongOfMoments(cube, 64, 0);
+    EXPECT_LT(difference(convolved(coarse_latlong, &cube, fine, 1e-5).map,
+                         prefilter(coarse_latlong, {&fine, 1}, reference)[0].map),
+              2e-5);
     const PrefilterRequest narrow{kLobes[2], Layout::faces, 7};
     const Panorama means = resample(cube, Layout::faces, 7, 0, Enlarging::hold);
     EXPECT_LT(difference(convolved(latlong, &cube, narrow, 1e-5).map, means), 1e-3);
