@@ -272,20 +272,16 @@ TEST(Diffuse, MaxErrorIsKeptOrRefused) {
 
 TEST(Specular, AnErrorThatTheQualityDoesNotProveIsTold) {
     const Scratch scratch;
-    ASSERT_EQ(runTool({"convert", "builtin:sky", "--to", "vcross", "--size", "8", "-o", "c.exr"},
-                      scratch.path())
-                  .exit_code,
-              0);
-    const auto told = [&](const std::string& exponent) {
+    const auto told = [&](const std::string& roughness) {
         const ToolResult result =
-            runTool({"specular", "c.exr", "--from", "vcross", "--kernel", "phong", "--exponent",
-                     exponent, "--quality", "high", "--size", "2", "-o", "s.exr"},
+            runTool({"specular", "builtin:sky", "--kernel", "charlie", "--roughness", roughness,
+                     "--quality", "high", "--size", "16", "-o", "s.exr"},
                     scratch.path());
         EXPECT_EQ(result.exit_code, 0) << result.err;
         return result.err;
     };
-    EXPECT_EQ(told("40"), "");
-    EXPECT_NE(told("40000").find("--quality high: not proven"), std::string::npos);
+    EXPECT_EQ(told("0.5"), "");
+    EXPECT_NE(told("0.05").find("--quality high: not proven"), std::string::npos);
 }
 
 TEST(Specular, WhatNarrowLobesCannotKeepIsRefusedBeforeTheWork) {
