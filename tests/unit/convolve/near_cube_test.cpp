@@ -88,7 +88,7 @@ TEST(NearCube, IsWhatAFineLatlongGives) {
     PrefilterOptions reference;
     reference.reference = true;
     reference.source = &cube;
-    const Panorama coarse_latlong = latlongOfMoments(cube, 64, 0);
+    const Panorama coarse_latlong = latlongOfMoments(cube, 256, 0);
     EXPECT_LT(difference(convolved(coarse_latlong, &cube, fine, 1e-5).map,
                          prefilter(coarse_latlong, {&fine, 1}, reference)[0].map),
               2e-5);
