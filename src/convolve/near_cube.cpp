@@ -1,5 +1,6 @@
 #include "convolve/near_cube.h"
 
+#include "convolve/near_groups.h"
 #include "convolve/near_texel.h"
 #include "core/parallel.h"
 #include "panorama/conventions.h"
@@ -9,7 +10,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -239,11 +239,11 @@ std::vector<Symmetry> symmetriesOfCube() {
     return symmetries;
 }
 
-/// A texel of the map and the one whose weights are reckoned for it, to which `symmetry` takes it.
+/// The texel whose weights are reckoned for another, y * width + x, and the symmetry that takes the
+/// other to it.
 struct Shared {
-    int key;
-    int x, y;
-    int symmetry;
+    int key = -1;
+    int symmetry = 0;
 };
 
 /// Whether the symmetry takes texel (x, y) to (i, j), its shape too: centres alone may meet by
@@ -281,7 +281,7 @@ bool takesTo(const MapExtent& map, const Symmetry& symmetry, int x, int y, int i
 
 /// The first texel that any symmetry takes this one to.
 Shared sharedOf(const MapExtent& map, const std::vector<Symmetry>& symmetries, int x, int y) {
-    Shared shared{y * map.width + x, x, y, 0}; // symmetry 0 leaves all as it is
+    Shared shared{y * map.width + x, 0}; // symmetry 0 leaves all as it is
     const V3d d = *texelDirection(map.layout, map.width, map.height, x + 0.5, y + 0.5);
     for (std::size_t k = 1; k < symmetries.size(); ++k) {
         const V2d p = texelPoint(map.layout, map.width, map.height, symmetries[k](d));
@@ -356,45 +356,26 @@ Image nearMapOfCube(const Panorama& cube, const NearField& field, const Prefilte
     const MapExtent map{request.layout, size.x, size.y, texelAngle(request)};
     const Image area = resample(cube, request.layout, request.size, threads, Enlarging::hold).image;
     const std::vector<Symmetry> symmetries = symmetriesOfCube();
-    // By rows, then in order of the texel whose weights they use.
-    std::vector<std::vector<Shared>> rows(static_cast<std::size_t>(size.y));
-    parallelFor(rows.size(), threads, [&](std::size_t row) {
+    const auto at = [&](int x, int y) { return static_cast<std::size_t>(y) * size.x + x; };
+    std::vector<Shared> shared(at(0, size.y));
+    parallelFor(static_cast<std::size_t>(size.y), threads, [&](std::size_t row) {
         const int y = static_cast<int>(row);
         for (int x = 0; x < size.x; ++x) {
             if (texelDirection(map.layout, map.width, map.height, x + 0.5, y + 0.5))
-                rows[row].push_back(sharedOf(map, symmetries, x, y));
+                shared[at(x, y)] = sharedOf(map, symmetries, x, y);
         }
     });
-    std::vector<Shared> texels;
-    for (const std::vector<Shared>& row : rows)
-        texels.insert(texels.end(), row.begin(), row.end());
-    std::ranges::stable_sort(texels, {}, &Shared::key);
-    std::vector<std::size_t> first;
-    for (std::size_t i = 0; i < texels.size(); ++i)
-        if (i == 0 || texels[i].key != texels[i - 1].key) first.push_back(i);
-    first.push_back(texels.size());
-    Panorama result{request.layout, Image(size.x, size.y)};
-    std::ranges::fill(result.image.pixels, 0.0f);
-    std::atomic<std::size_t> finished = 0;
-    const std::size_t groups = first.size() - 1;
-    parallelFor(groups, threads, [&](std::size_t group) {
-        const int key = texels[first[group]].key;
-        const CubeWeights weights =
-            weightsOf(field, grid, map, key % map.width, key / map.width, footprint);
-        for (std::size_t i = first[group]; i < first[group + 1]; ++i) {
-            const Shared& t = texels[i];
-            const V3d value =
-                weightedSum(faces.image, edge, weights,
-                            symmetries[static_cast<std::size_t>(t.symmetry)], area.at(t.x, t.y));
-            for (int c = 0; c < 3; ++c)
-                result.image.at(t.x, t.y)[c] = static_cast<float>(value[c]);
-        }
-        const std::size_t at = finished++, height = rows.size();
-        for (std::size_t row = at * height / groups; row < (at + 1) * height / groups; ++row)
-            if (progress) progress->step();
-    });
-    mergeBorder(result);
-    return std::move(result.image);
+    std::vector<KeyedTexel> texels;
+    for (int y = 0; y < size.y; ++y)
+        for (int x = 0; x < size.x; ++x)
+            if (shared[at(x, y)].key >= 0) texels.push_back({shared[at(x, y)].key, x, y});
+    return sumByKeys(
+        request.layout, size, std::move(texels), threads, progress,
+        [&](int x, int y) { return weightsOf(field, grid, map, x, y, footprint); },
+        [&](const CubeWeights& weights, int x, int y) {
+            const auto symmetry = static_cast<std::size_t>(shared[at(x, y)].symmetry);
+            return weightedSum(faces.image, edge, weights, symmetries[symmetry], area.at(x, y));
+        });
 }
 
 } // namespace ibl

@@ -1,12 +1,11 @@
 #include "convolve/near_map.h"
 
-#include "core/parallel.h"
+#include "convolve/near_groups.h"
 #include "panorama/layouts.h"
 #include "panorama/resample.h"
 #include "panorama/square_maps.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <numeric>
 
@@ -139,11 +138,7 @@ Image nearMap(const Panorama& probe, const Panorama& areas, const NearField& fie
     const MapExtent map{request.layout, size.x, size.y, texelAngle(request)};
     const Image area =
         resample(areas, request.layout, request.size, threads, Enlarging::hold).image;
-    // Texels in order of the one whose weights they use.
-    struct Texel {
-        int key, x, y;
-    };
-    std::vector<Texel> texels;
+    std::vector<KeyedTexel> texels;
     for (int y = 0; y < map.height; ++y) {
         for (int x = 0; x < map.width; ++x) {
             if (!texelDirection(map.layout, map.width, map.height, x + 0.5, y + 0.5)) continue;
@@ -151,36 +146,12 @@ Image nearMap(const Panorama& probe, const Panorama& areas, const NearField& fie
             texels.push_back({move.y * map.width + move.x, x, y});
         }
     }
-    std::ranges::stable_sort(texels, {}, &Texel::key);
-    std::vector<std::size_t> first;
-    for (std::size_t i = 0; i < texels.size(); ++i)
-        if (i == 0 || texels[i].key != texels[i - 1].key) first.push_back(i);
-    first.push_back(texels.size());
-    Panorama result{request.layout, Image(size.x, size.y)};
-    std::ranges::fill(result.image.pixels, 0.0f);
-    std::atomic<std::size_t> finished = 0;
-    const std::size_t groups = first.size() - 1, rows = static_cast<std::size_t>(map.height);
-    // Of a map of few texels each may take seconds.
-    const std::size_t at_once = std::clamp<std::size_t>(groups / 64, 1, 16);
-    parallelForRuns(groups, at_once, threads, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t group = begin; group < end; ++group) {
-            const int key = texels[first[group]].key;
-            const NearWeights weights =
-                nearWeights(field, map, key % map.width, key / map.width, footprint);
-            for (std::size_t i = first[group]; i < first[group + 1]; ++i) {
-                const Texel& t = texels[i];
-                const V3d value = weightedSum(
-                    probe.image, weights, moveOf(map, t.x, t.y, field.width), area.at(t.x, t.y));
-                for (int c = 0; c < 3; ++c)
-                    result.image.at(t.x, t.y)[c] = static_cast<float>(value[c]);
-            }
-            const std::size_t at = finished++;
-            for (std::size_t row = at * rows / groups; row < (at + 1) * rows / groups; ++row)
-                if (progress) progress->step();
-        }
-    });
-    mergeBorder(result);
-    return std::move(result.image);
+    return sumByKeys(
+        request.layout, size, std::move(texels), threads, progress,
+        [&](int x, int y) { return nearWeights(field, map, x, y, footprint); },
+        [&](const NearWeights& weights, int x, int y) {
+            return weightedSum(probe.image, weights, moveOf(map, x, y, field.width), area.at(x, y));
+        });
 }
 
 } // namespace ibl
