@@ -2,6 +2,8 @@
 
 #include "convolve/near_groups.h"
 #include "convolve/near_texel.h"
+#include "convolve/peaks.h"
+#include "convolve/row_geometry.h"
 #include "core/parallel.h"
 #include "panorama/conventions.h"
 #include "panorama/layouts.h"
@@ -16,11 +18,6 @@
 
 namespace ibl {
 namespace {
-
-/// As peaks.h has them.
-V3d polar(const V3d& d) {
-    return {-d.z, d.x, d.y};
-}
 
 /// A face as a plane at the distance 1: place (s, t) is `middle + s * right + t * down`.
 struct Plane {
@@ -349,9 +346,7 @@ Image nearMapOfCube(const Panorama& cube, const NearField& field, const Prefilte
     const Panorama faces = resample(cube, Layout::faces, edge, threads, Enlarging::hold);
     Grid grid{edge, std::vector<double>(static_cast<std::size_t>(edge) * edge)};
     for (int j = 0; j < edge; ++j)
-        for (int i = 0; i < edge; ++i)
-            grid.solid_angle[static_cast<std::size_t>(j) * edge + i] =
-                cubeTexelSolidAngle(i, j, edge);
+        faceRowSolidAngles(edge, j, &grid.solid_angle[static_cast<std::size_t>(j) * edge]);
     const V2i size = layoutExtent(request.layout, request.size);
     const MapExtent map{request.layout, size.x, size.y, texelAngle(request)};
     const Image area = resample(cube, request.layout, request.size, threads, Enlarging::hold).image;

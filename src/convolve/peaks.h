@@ -61,6 +61,11 @@ struct PixelPoints {
 /// Gauss's in (psi, theta): in cos theta the pixels at the poles would not be smooth.
 PixelPoints pixelPoints(int width, int height, int column, int row, int n);
 
+/// A direction with the pole along +Z.
+inline V3d polar(const V3d& d) {
+    return {-d.z, d.x, d.y};
+}
+
 /// The direction of colatitude theta and azimuth psi, with the pole along +Z.
 V3d polarDirection(double theta, double psi);
 

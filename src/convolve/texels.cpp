@@ -26,11 +26,6 @@ V3d directionAt(Layout layout, int width, int height, V2d place) {
     return texelDirection(layout, width, height, place.x, place.y).value_or(V3d(0, 0, -1));
 }
 
-/// A direction with the pole along +Z.
-V3d polar(const V3d& d) {
-    return {-d.z, d.x, d.y};
-}
-
 /// A rule of at least n points on [-1, 1]: Gauss's, for many points in equal parts.
 GaussRule footprintRule(int n) {
     constexpr int kPart = 16;
