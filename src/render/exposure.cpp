@@ -10,7 +10,7 @@
 namespace ibl {
 namespace {
 
-struct Part {
+struct RowSums {
     PictureCensus census;
     double logs = 0;
     double weight = 0;
@@ -26,7 +26,7 @@ double luminance(double r, double g, double b) {
 // within double's range, at an error of 1e-15 for them all.
 constexpr int kFactors = 7;
 
-void addRow(Part& part, const float* p, int width, int channels, double delta) {
+void addRow(RowSums& part, const float* p, int width, int channels, double delta) {
     double product = 1;
     int factors = 0;
     for (int x = 0; x < width; ++x, p += channels) {
@@ -64,16 +64,16 @@ void addRow(Part& part, const float* p, int width, int channels, double delta) {
 PictureCensus takePictureCensus(const Image& image, double delta, int threads) {
     constexpr std::size_t kRows = 16;
     const auto rows = static_cast<std::size_t>(image.height);
-    std::vector<Part> parts((rows + kRows - 1) / kRows);
+    std::vector<RowSums> parts((rows + kRows - 1) / kRows);
     parallelForRuns(rows, kRows, threads, [&](std::size_t begin, std::size_t end) {
-        Part part;
+        RowSums part;
         for (std::size_t y = begin; y < end; ++y) {
             addRow(part, image.row(static_cast<int>(y)), image.width, image.channels, delta);
         }
         parts[begin / kRows] = part;
     });
-    Part total;
-    for (const Part& part : parts) {
+    RowSums total;
+    for (const RowSums& part : parts) {
         total.census.nan += part.census.nan;
         total.census.infinite += part.census.infinite;
         total.census.negative += part.census.negative;
