@@ -76,13 +76,15 @@ PrefilterResult directMap(const PlacedProbe& probe, const PrefilterRequest& requ
 }
 
 bool isSummedSoon(const PlacedProbe& probe, const PrefilterRequest& request, double texels) {
-    // Of a texel and a pixel, as measured: by a point and by outlines, of rings besides.
+    // Of a texel and a pixel, as measured: by a point and by outlines, of rings besides. A face's
+    // outline in one piece has many arcs.
     constexpr double kPoint = 0.12e-6, kPointOfRing = 0.25e-6;
-    constexpr double kOutlines = 0.6e-6, kOutlinesOfRing = 6e-6;
+    constexpr double kOutlines = 3e-6, kOutlinesOfRing = 6e-6, kOutlinesOfFaces = 25e-6;
     const bool is_ring = request.lobe.kernel == Kernel::charlie;
-    const bool by_outlines = footprintOf(request.lobe, texelAngle(request), kAnyDegree).scale > 0;
-    const double each =
-        by_outlines ? (is_ring ? kOutlinesOfRing : kOutlines) : (is_ring ? kPointOfRing : kPoint);
+    const double texel = texelAngle(request);
+    double each = is_ring ? kPointOfRing : kPoint;
+    if (footprintOf(request.lobe, texel, kAnyDegree).scale > 0)
+        each = texel > 1 ? kOutlinesOfFaces : is_ring ? kOutlinesOfRing : kOutlines;
     return each * texels * probe.image.width * probe.image.height <= 12;
 }
 
