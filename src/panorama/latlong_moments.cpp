@@ -66,7 +66,7 @@ Panorama latlongOfMoments(const Panorama& probe, int rows, int threads) {
     Panorama result{Layout::latlong, Image(extent.x, extent.y)};
     Image down(extent.x, extent.y);
     if (isSquareMap(probe.layout)) {
-        throughSquareMap(probe, result, Enlarging::hold, threads, &down);
+        throughSquareMap(probe, probe, result, Enlarging::hold, threads, &down);
     } else if (isCubeFamily(probe.layout) || probe.layout == Layout::exrCube) {
         cubeToLatlong(probe, result, Enlarging::hold, threads, &down);
     } else {

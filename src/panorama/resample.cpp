@@ -126,11 +126,31 @@ void cubeToCube(const Panorama& source, Panorama& result, Enlarging enlarging, i
 
 namespace {
 
-/// What square maps are converted from and to directly: other cubes and the exr layouts are
-/// resampled to the plain layout of their kind and size on the way.
+/// What square maps are converted from and to directly: other cubes are put into faces, and what
+/// becomes one of the exr layouts into the plain layout of its kind and size on the way.
 Layout plainLayout(Layout layout) {
     if (layout == Layout::exrLatlong) return Layout::latlong;
     return isCube(layout) ? Layout::faces : layout;
+}
+
+/// The same areas in the plain layout of an exr layout's kind, whose borders run through centres:
+/// each pixel is two by two, or half of them.
+Panorama ofHalfPixels(const Panorama& source, int threads) {
+    const auto halved = [](int pixels) { return std::max(1, 2 * (pixels - 1)); };
+    const Image& image = source.image;
+    if (source.layout == Layout::exrCube) {
+        const int edge = halved(image.width);
+        Panorama halves{Layout::faces, Image(edge, 6 * edge)};
+        cubeToCube(source, halves, Enlarging::hold, threads);
+        return halves;
+    }
+    Panorama halves{Layout::latlong, Image(halved(image.width), halved(image.height))};
+    const LatlongPixels pixels(source);
+    for (int y = 0; y < halves.image.height; ++y)
+        for (int x = 0; x < halves.image.width; ++x)
+            std::copy_n(pixels.at((x + 1) / 2 % pixels.columns(), (y + 1) / 2), 3,
+                        halves.image.at(x, y));
+    return halves;
 }
 
 } // namespace
@@ -208,7 +228,8 @@ Panorama resample(const Panorama& source, Layout to, int size, int threads, Enla
 
     if (isSquareMap(source.layout) || isSquareMap(to)) {
         const Layout from_plain = plainLayout(source.layout), to_plain = plainLayout(to);
-        if (from_plain != source.layout) {
+        const bool halved = hasBorderRule(source.layout);
+        if (from_plain != source.layout && !halved) {
             const int source_size =
                 *layoutSize(source.layout, source.image.width, source.image.height);
             return resample(resample(source, from_plain, source_size, threads, enlarging), to, size,
@@ -221,7 +242,11 @@ Panorama resample(const Panorama& source, Layout to, int size, int threads, Enla
         const V2i plain = layoutExtent(to, size);
         Panorama result{to, Image(plain.x, plain.y)};
         std::fill(result.image.pixels.begin(), result.image.pixels.end(), 0.0f);
-        throughSquareMap(source, result, enlarging, threads);
+        if (halved) {
+            throughSquareMap(source, ofHalfPixels(source, threads), result, enlarging, threads);
+        } else {
+            throughSquareMap(source, source, result, enlarging, threads);
+        }
         return result;
     }
     Panorama result{to, Image(extent.x, extent.y)};

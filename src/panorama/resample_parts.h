@@ -19,9 +19,11 @@ void latlongToCube(const Panorama& source, Panorama& result, Enlarging enlarging
 void cubeToLatlong(const Panorama& source, Panorama& result, Enlarging enlarging, int threads,
                    Image* down = nullptr);
 void cubeToCube(const Panorama& source, Panorama& result, Enlarging enlarging, int threads);
-/// Where one of the two is a square map, the other one too, a lat-long or `faces`.
-void throughSquareMap(const Panorama& source, Panorama& result, Enlarging enlarging, int threads,
-                      Image* down = nullptr);
+/// Where one of the two is a square map, the other one too, a lat-long or `faces`. What is read by
+/// area is `areas`: `source`, or where that has borders that run through centres the same in pixels
+/// of half the width.
+void throughSquareMap(const Panorama& source, const Panorama& areas, Panorama& result,
+                      Enlarging enlarging, int threads, Image* down = nullptr);
 
 /// The share of the area filter (the rest is interpolation) where a new texel is `ratio` old pixels
 /// wide: none up to 0.8, all from 1 on, smooth between.

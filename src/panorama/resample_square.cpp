@@ -153,8 +153,26 @@ private:
         readColumns(right, row, middle, last, depth + 1);
     }
 
-    /// Of a piece of a pixel: of the density about its middle by its moments, exact up to the
-    /// second degree.
+    /// Of a polygon whose lines are great circles, because the image is seen in planes from the
+    /// middle of an octahedron or a cube: by Van Oosterom and Strackee (1983), without its sign.
+    double greatCircles(const Polygon& p, const V2d& middle) const {
+        const double below = std::clamp(std::floor(middle.y / width_), 0.0, 5.0); // faces
+        const auto direction = [&](const V2d& at) {
+            if (source_.layout == Layout::octahedral)
+                return *squareMapDirection(Layout::octahedral, at.x / width_, at.y / width_);
+            return V3d(2 * at.x / width_ - 1, 2 * (at.y / width_ - below) - 1, 1).normalized();
+        };
+        double sum = 0;
+        const V3d a = direction(p[0]);
+        for (std::size_t i = 1; i + 1 < p.size(); ++i) {
+            const V3d b = direction(p[i]), c = direction(p[i + 1]);
+            sum += 2 * std::atan2((b - a).cross(c - a).dot(a), 1 + a.dot(b) + b.dot(c) + c.dot(a));
+        }
+        return std::abs(sum);
+    }
+
+    /// Of a piece of a pixel, but for a factor: of large ones exactly, else of the density about
+    /// its middle by its moments, exact up to the second degree.
     double solidAngle(const Polygon& p, V2d& middle) const {
         double zeroth = 0, xx = 0, xy = 0, yy = 0;
         V2d first(0);
@@ -172,6 +190,11 @@ private:
         middle = p[0] + off;
         if (source_.layout == Layout::latlong || source_.layout == Layout::mirrorBall)
             return 0.5 * zeroth;
+        const bool planes = source_.layout == Layout::octahedral || source_.layout == Layout::faces;
+        constexpr double kLarge = 1e-3; // steradians, about: below, the fourth degree is 1e-7
+        const double unit = 2.0 / width_;
+        if (planes && 0.5 * std::abs(zeroth) * unit * unit > kLarge)
+            return std::copysign(greatCircles(p, middle) / (unit * unit), zeroth);
         const ChartDensity density = chartDensity(source_, middle);
         // Second moments about the middle.
         xx = xx / 24 - 0.5 * zeroth * off.x * off.x;
@@ -256,35 +279,37 @@ bool isWithinOnePixel(const Panorama& source, const Panorama& latlong, const V3d
 
 } // namespace
 
-void throughSquareMap(const Panorama& source, Panorama& result, Enlarging enlarging, int threads,
-                      Image* down) {
+void throughSquareMap(const Panorama& source, const Panorama& areas, Panorama& result,
+                      Enlarging enlarging, int threads, Image* down) {
     const Sampler sampler = makeSampler(source);
-    const Image& from = source.image;
+    const double pixel_size = hasBorderRule(source.layout) ? 2 : 1; // of the areas'
+    const Image& from = areas.image;
     Image& image = result.image;
     parallelFor(static_cast<std::size_t>(image.height), threads, [&](std::size_t row) {
-        AreaReader reader(source, result);
+        AreaReader reader(areas, result);
         const int y = static_cast<int>(row);
         std::vector<MomentSum> moments(down ? image.width : 0);
         for (int x = 0; x < image.width; ++x) {
             const auto d =
                 texelDirection(result.layout, image.width, image.height, x + 0.5, y + 0.5);
             if (!d) continue;
-            const V2d p = texelPoint(source.layout, from.width, from.height, *d);
+            const V2d p = texelPoint(areas.layout, from.width, from.height, *d);
             const int i = std::clamp(static_cast<int>(p.x), 0, from.width - 1);
             const int j = std::clamp(static_cast<int>(p.y), 0, from.height - 1);
-            const V2i at = owningTexel(source.layout, from.width, i, j).value_or(V2i(i, j));
+            const V2i at = owningTexel(areas.layout, from.width, i, j).value_or(V2i(i, j));
             if (down) {
-                if (!isWithinOnePixel(source, result, *d, p)) moments[x] = reader.moments(x, y);
+                if (!isWithinOnePixel(areas, result, *d, p)) moments[x] = reader.moments(x, y);
                 if (moments[x].area == 0) moments[x].add(from.at(at.x, at.y), 1, 0, 0);
                 continue;
             }
             const double pitch = enlarging == Enlarging::hold ? 0 : pitchAt(result, x, y);
-            double share = enlarging == Enlarging::hold
-                               ? 1
-                               : areaShare(pitch / pitchAt(source, at.x, at.y), enlarging);
+            double share =
+                enlarging == Enlarging::hold
+                    ? 1
+                    : areaShare(pitch / (pixel_size * pitchAt(areas, at.x, at.y)), enlarging);
             V3d value(0), mean;
             if (share > 0) {
-                if (isWithinOnePixel(source, result, *d, p)) {
+                if (isWithinOnePixel(areas, result, *d, p)) {
                     const float* pixel = from.at(at.x, at.y);
                     value = V3d(pixel[0], pixel[1], pixel[2]) * share;
                 } else if (reader.mean(x, y, mean)) {
