@@ -3,8 +3,8 @@
 #include "convolve/direct.h"
 #include "convolve/error_bound.h"
 #include "convolve/fill_map.h"
-#include "convolve/near_cube.h"
 #include "convolve/near_map.h"
+#include "convolve/near_own_texels.h"
 #include "core/parallel.h"
 #include "core/stopwatch.h"
 #include "panorama/layouts.h"
@@ -30,11 +30,14 @@ const Panorama& areasFor(const PlacedProbe& probe, const Lobe& lobe) {
 } // namespace
 
 const NearRules& nearRulesFor(const PlacedProbe& probe, const Lobe& lobe, double max_error) {
-    // A coarse cube's edges are long and few.
-    const bool coarse =
-        ownTexels(probe, lobe) &&
-        layoutSize(probe.source->layout, probe.source->image.width, probe.source->image.height)
-                .value() < 100;
+    // Coarse probes' edges are long and few.
+    constexpr double kCoarse = 0.5 * kPi / 100;
+    const auto angleOf = [&](const Panorama& source) {
+        return texelAngle(
+            {lobe, source.layout,
+             layoutSize(source.layout, source.image.width, source.image.height).value()});
+    };
+    const bool coarse = ownTexels(probe, lobe) && angleOf(*probe.source) > kCoarse;
     return nearRules(coarse ? std::min(max_error, 1e-5) : max_error);
 }
 
@@ -44,7 +47,7 @@ Image nearMapOf(const PlacedProbe& probe, const NearKernel& kernel, const NearRu
     const NearField field =
         makeNearField(kernel, rules, probe.image.width, probe.image.height, threads);
     if (ownTexels(probe, request.lobe))
-        return nearMapOfCube(*probe.source, field, request, footprint, threads, progress);
+        return nearMapOfOwnTexels(*probe.source, field, request, footprint, threads, progress);
     return nearMap(probe.panorama, areasFor(probe, request.lobe), field, request, footprint,
                    threads, progress);
 }

@@ -23,13 +23,13 @@ struct PlacedProbe {
 const NearRules& nearRulesFor(const PlacedProbe& probe, const Lobe& lobe, double max_error);
 
 /// The mean over each texel's footprint of the kernel's convolution with the probe, by its pixels'
-/// outlines: of lobes that see a cube's own texels by those.
+/// outlines: of lobes that see the probe's own texels by those.
 Image nearMapOf(const PlacedProbe& probe, const NearKernel& kernel, const NearRules& rules,
                 const PrefilterRequest& request, const Footprint& footprint, int threads,
                 Progress* progress = nullptr);
 
 /// The sum over all pixels: by points in the texel, or where the lobe is too narrow for them, or
-/// sees a cube's own texels, by the outlines of texel and pixels.
+/// sees the probe's own texels, by the outlines of texel and pixels.
 PrefilterResult directMap(const PlacedProbe& probe, const PrefilterRequest& request, int threads,
                           Progress& progress);
 

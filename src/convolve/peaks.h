@@ -66,6 +66,11 @@ inline V3d polar(const V3d& d) {
     return {-d.z, d.x, d.y};
 }
 
+/// The direction of which that is the polar one.
+inline V3d unpolar(const V3d& d) {
+    return {d.y, d.z, -d.x};
+}
+
 /// The direction of colatitude theta and azimuth psi, with the pole along +Z.
 V3d polarDirection(double theta, double psi);
 

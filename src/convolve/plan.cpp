@@ -1,7 +1,7 @@
 #include "convolve/plan.h"
 
 #include "convolve/error_bound.h"
-#include "convolve/near_cube.h"
+#include "convolve/near_own_texels.h"
 #include "convolve/texels.h"
 #include "core/parallel.h"
 #include "panorama/conventions.h"

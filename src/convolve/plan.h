@@ -29,8 +29,8 @@ enum class Method {
 /// takes the same time within a tenth, for twice and three times the memory.
 inline constexpr int kNarrowDegree = 512;
 
-/// The same of lobes that see a cube's own texels (near_cube.h): what is read into a lat-long is
-/// exact to lower degrees than that has rows.
+/// The same of lobes that see a probe's own texels (near_own_texels.h): what is read into a
+/// lat-long is exact to lower degrees than that has rows.
 inline constexpr int kDegreeOfTails = 64;
 
 struct LobePlan {

@@ -2,7 +2,7 @@
 
 #include "convolve/analysis.h"
 #include "convolve/narrow.h"
-#include "convolve/near_cube.h"
+#include "convolve/near_own_texels.h"
 #include "convolve/plan.h"
 #include "convolve/probe_scale.h"
 #include "convolve/texels.h"
@@ -25,6 +25,9 @@ constexpr int kLeastDegree = 8;
 /// By how much less the error of a lat-long is than what is between it and one of half as many
 /// rows: at least (3 were it to fall with their square), and about.
 constexpr double kLeastFall = 2, kFall = 9;
+/// At least where no more than kDegreeOfTails are read, whose waves are long beside all pixels: 7
+/// for the third power (measured from octahedral maps of 512, 256 rows to 1024: 13).
+constexpr double kLeastFallOfTails = 4;
 
 /// The integral over the sphere of the squares of what the lat-long's pixels differ from the halved
 /// one's.
@@ -133,8 +136,9 @@ std::vector<ReadingError> readingErrors(const Image& latlong, const Panorama& so
         if (norm <= 0) continue;
         const double beyond = shown[i].ends ? 0 : read[last];
         const double between = std::sqrt((sum + beyond * beyond * left) / norm);
-        errors[i].bound = between / kLeastFall;
-        errors[i].worst = at_point / std::sqrt(probe[0] / (36 * kPi) + 1e-300) / kLeastFall;
+        const double fall = shown[i].ends ? kLeastFallOfTails : kLeastFall;
+        errors[i].bound = between / fall;
+        errors[i].worst = at_point / std::sqrt(probe[0] / (36 * kPi) + 1e-300) / fall;
         errors[i].estimate = between / kFall;
     }
     return errors;

@@ -24,9 +24,8 @@ struct ReadingError {
 /// would change had the probe been read into half as many rows, divided by what the error falls by.
 /// In harmonics, as far as the lobe and the map's texels see them, and beyond that by the energy
 /// that is left. Mirrors: none, which are filtered from the probe itself. Of lobes that see its own
-/// texels (near_cube.h) only what harmonics hold comes from the lat-long, and with `reference`
-/// nothing. Throws Error (input) on
-/// values that are not finite.
+/// texels (near_own_texels.h) only what harmonics hold comes from the lat-long, and with
+/// `reference` nothing. Throws Error (input) on values that are not finite.
 std::vector<ReadingError> readingErrors(const Image& latlong, const Panorama& source,
                                         std::span<const PrefilterRequest> requests, bool reference,
                                         int threads);

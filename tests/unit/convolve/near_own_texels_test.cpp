@@ -1,4 +1,4 @@
-#include "convolve/near_cube.h"
+#include "convolve/near_own_texels.h"
 #include "panorama/latlong_moments.h"
 #include "panorama/resample.h"
 #include "unit/panorama/probes.h"
@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 
 namespace ibl {
 namespace {
@@ -51,54 +52,84 @@ const Lobe kLobes[] = {{Kernel::ggx, 0.1},
                        {Kernel::phong, 3000},
                        {Kernel::blinnPhong, 1e5}};
 
-TEST(NearCube, IsForNarrowLobesOfCubes) {
+TEST(NearOwnTexels, IsForNarrowLobesOfCoarseProbes) {
     const Panorama cube = test::noise(Layout::vcross, 3 * 64, 4 * 64, 3);
     EXPECT_TRUE(seesOwnTexels(cube, {Kernel::ggx, 0.1}));
     EXPECT_FALSE(seesOwnTexels(cube, {Kernel::ggx, 0.2}));
     EXPECT_FALSE(seesOwnTexels(cube, {Kernel::charlie, 0.05}));
-    EXPECT_FALSE(seesOwnTexels(test::noise(Layout::octahedral, 64, 64, 3), {Kernel::ggx, 0.1}));
+    EXPECT_TRUE(seesOwnTexels(test::noise(Layout::octahedral, 64, 64, 3), {Kernel::ggx, 0.1}));
+    EXPECT_FALSE(seesOwnTexels(test::noise(Layout::octahedral, 2048, 2048, 3), {Kernel::ggx, 0.1}));
+    EXPECT_FALSE(seesOwnTexels(test::noise(Layout::latlong, 64, 32, 3), {Kernel::ggx, 0.05}));
+    EXPECT_FALSE(seesOwnTexels(test::noise(Layout::exrCube, 3, 18, 3), {Kernel::ggx, 0.05}));
+}
+
+// The same of probes that are coarse, so that little is lost in a fine lat-long: their values at
+// its pixels, with what borders share.
+Panorama noiseOf(Layout layout, int size) {
+    const V2i extent = layoutExtent(layout, size);
+    Panorama noise = test::noise(layout, extent.x, extent.y, 3);
+    mergeBorder(noise);
+    return noise;
 }
 
 // Of lobes wide beside the rows of a lat-long, of which little is lost then, and of one that is
 // narrow beside all texels, which leaves the area filter's means.
-TEST(NearCube, IsWhatAFineLatlongGives) {
-    const Panorama cube = test::noise(Layout::hcross, 4 * 12, 3 * 12, 3);
-    const Panorama latlong = latlongOfMoments(cube, 1024, 0);
-    for (const Lobe& lobe : {kLobes[0], kLobes[3]}) {
-        for (const PrefilterRequest request : {PrefilterRequest{lobe, Layout::vstrip, 7},
-                                               {lobe, Layout::latlong, 6},
-                                               {lobe, Layout::octahedral, 5},
-                                               {lobe, Layout::mirrorBall, 6}}) {
-            const PrefilterResult own = convolved(latlong, &cube, request, 1e-5);
+TEST(NearOwnTexels, AreWhatAFineLatlongGives) {
+    struct Case {
+        Layout layout;
+        int size;
+        Layout to;
+        int to_size;
+    };
+    for (const Case& c : {Case{Layout::hcross, 12, Layout::vstrip, 7},
+                          {Layout::hcross, 12, Layout::mirrorBall, 6},
+                          {Layout::exrCube, 13, Layout::latlong, 6},
+                          {Layout::exrLatlong, 16, Layout::octahedral, 5},
+                          {Layout::octahedral, 24, Layout::vstrip, 5},
+                          {Layout::octahedral, 15, Layout::octahedral, 5},
+                          {Layout::octahedral, 16, Layout::latlong, 24},
+                          {Layout::angular, 24, Layout::vstrip, 5},
+                          {Layout::mirrorBall, 25, Layout::octahedral, 6}}) {
+        const Panorama probe = noiseOf(c.layout, c.size);
+        const Panorama latlong = latlongOfMoments(probe, 1024, 0);
+        PrefilterOptions reference;
+        reference.reference = true;
+        reference.source = &probe;
+        for (const Lobe& lobe : {kLobes[0], kLobes[3]}) {
+            const PrefilterRequest request{lobe, c.to, c.to_size};
+            const PrefilterResult own = convolved(latlong, &probe, request, 1e-5);
             const PrefilterResult fine = convolved(latlong, nullptr, request, 1e-5);
-            EXPECT_LT(difference(own.map, fine.map), 2e-5)
-                << layoutName(request.layout) << " kernel " << static_cast<int>(lobe.kernel) << " "
-                << lobe.parameter;
-            EXPECT_LT(own.error_bound, 1e-5);
-            PrefilterOptions reference;
-            reference.reference = true;
-            reference.source = &cube;
+            const std::string title = std::string(layoutName(c.layout)) + " to " +
+                                      std::string(layoutName(c.to)) + " " +
+                                      std::to_string(lobe.parameter);
+            EXPECT_LT(difference(own.map, fine.map), 1e-5) << title;
+            EXPECT_LT(own.error_bound, 1e-5) << title;
             EXPECT_LT(difference(own.map, prefilter(latlong, {&request, 1}, reference)[0].map),
                       5e-6)
-                << layoutName(request.layout) << " " << lobe.parameter;
+                << title;
         }
+        const PrefilterRequest narrow{kLobes[2], Layout::faces, 7};
+        const Panorama means = resample(probe, Layout::faces, 7, 0, Enlarging::hold);
+        EXPECT_LT(difference(convolved(latlong, &probe, narrow, 1e-5).map, means), 1e-3)
+            << layoutName(c.layout);
     }
-    // Where texels are their centres' values too.
+}
+
+// Where texels are their centres' values too.
+TEST(NearOwnTexels, AreTheReferencesAtCentres) {
+    const Panorama cube = noiseOf(Layout::hcross, 12);
     const PrefilterRequest fine{kLobes[0], Layout::faces, 100};
     PrefilterOptions reference;
     reference.reference = true;
     reference.source = &cube;
-    const Panorama coarse_latlong = latlongOfMoments(cube, 256, 0);
-    EXPECT_LT(difference(convolved(coarse_latlong, &cube, fine, 1e-5).map,
-                         prefilter(coarse_latlong, {&fine, 1}, reference)[0].map),
+    const Panorama latlong = latlongOfMoments(cube, 256, 0);
+    EXPECT_LT(difference(convolved(latlong, &cube, fine, 1e-5).map,
+                         prefilter(latlong, {&fine, 1}, reference)[0].map),
               2e-5);
-    const PrefilterRequest narrow{kLobes[2], Layout::faces, 7};
-    const Panorama means = resample(cube, Layout::faces, 7, 0, Enlarging::hold);
-    EXPECT_LT(difference(convolved(latlong, &cube, narrow, 1e-5).map, means), 1e-3);
 }
 
 // Odd edges, edges of one texel, and texels smaller and larger than the map's.
-TEST(NearCube, SunsKeepTheirEnergyAndConstantsStay) {
+TEST(NearOwnTexels, SunsKeepTheirEnergyAndConstantsStay) {
     for (const int edge : {1, 5, 33}) {
         const V2i extent = layoutExtent(Layout::faces, edge);
         Panorama sun{Layout::faces, Image(extent.x, extent.y)};
