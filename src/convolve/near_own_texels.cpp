@@ -40,6 +40,12 @@ struct Tile {
 struct FourPoints {
     std::array<Imath::V3f, 4> at;
     std::array<float, 4> share;
+
+    /// The pixel's longer side, about, chord.
+    double side() const {
+        const float square = std::max((at[1] - at[0]).length2(), (at[2] - at[0]).length2());
+        return std::sqrt(3.0 * square);
+    }
 };
 
 /// The probe.
@@ -139,10 +145,7 @@ bool measure(const Texels& texels, Tile& tile) {
             if (kind == Pixel::none) continue;
             if (kind == Pixel::plain && !isAtBorder(i, j)) {
                 // A tile may be more than half the sphere, and its largest pixels within.
-                const std::array<Imath::V3f, 4>& four = texels.points[texels.at(x, y)].at;
-                const float side =
-                    std::max((four[1] - four[0]).length(), (four[2] - four[0]).length());
-                tile.extent = std::max(tile.extent, std::numbers::sqrt3 * side);
+                tile.extent = std::max(tile.extent, texels.points[texels.at(x, y)].side());
                 corners.push_back(texels.middle(x, y));
                 continue;
             }
@@ -263,17 +266,22 @@ double meanOf(const RadialTable& value, const Texels& texels, int x, int y,
 /// Marks the pixels that are near and sets the others' weights, as near_weights.cpp does.
 void addFar(const NearField& field, const Texels& texels, const Texel& texel, Block& block) {
     const Tile& tile = *block.tile;
-    const double far = field.rules.far * std::hypot(1.4 * texel.radius, tile.extent);
+    const auto square = [](double a) { return a * a; };
     const double reach = field.kernel.reach + texel.radius + tile.extent;
     for (int j = 0; j < tile.size.y; ++j) {
         for (int i = 0; i < tile.size.x; ++i) {
             const int x = tile.first.x + i, y = tile.first.y + j;
             if (texels.kindOf(x, y) == Pixel::none) continue;
             const auto at = static_cast<std::size_t>(block.at(i, j));
-            const double distance = (texels.middle(x, y) - texel.centre).length();
-            if (distance < far) {
+            const double extent = texels.kindOf(x, y) == Pixel::cut
+                                      ? tile.extent
+                                      : texels.points[texels.at(x, y)].side();
+            const double far2 =
+                square(field.rules.far) * (square(1.4 * texel.radius) + square(extent));
+            const double distance2 = (texels.middle(x, y) - texel.centre).length2();
+            if (distance2 < far2) {
                 block.near[at] = 1;
-            } else if (distance <= reach) {
+            } else if (distance2 <= square(reach)) {
                 block.weight[at] =
                     texels.solidAngle(x, y) * meanOf(field.value, texels, x, y, texel.four);
             }
