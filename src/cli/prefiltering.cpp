@@ -98,9 +98,8 @@ int mostRows(const Panorama& probe, double error) {
     return std::max(latlongHeight(probe), fewer ? 1024 : 2048);
 }
 
-/// By which the error of reading falls at least and likely, from one lat-long to one of twice as
-/// many rows.
-constexpr double kRowsFall = 8, kRowsLikelyFall = 14;
+/// By which the error of reading falls, about, from one lat-long to one of twice as many rows.
+constexpr double kRowsFall = 13;
 
 /// The rows that a probe is first read into: its own number halved or doubled, even and from 256
 /// on, from where on the error falls as it should.
@@ -155,22 +154,16 @@ Panorama readFor(const Panorama& probe, std::span<const PrefilterRequest> reques
     int rows = firstRows(probe);
     Panorama latlong = read(rows);
     double error = errorOfReading(latlong);
-    const int first = rows, most = mostRows(probe, asked);
-    double likely = error; // with half as many rows
-    for (; error > allowed && 2 * rows <= most; error /= kRowsFall) {
-        if (rows > first) likely /= kRowsLikelyFall;
-        rows *= 2;
-    }
-    if (rows > 2 * first && likely <= allowed) {
-        latlong = read(rows / 2);
-        if (errorOfReading(latlong) <= allowed) return latlong;
-    }
-    if (rows > first) latlong = read(rows);
-    // Twice as many as ever only if they are enough and these are not.
-    if (error > allowed && 2 * rows > most && !isSquareMap(probe.layout)) {
+    const int most = mostRows(probe, asked);
+    while (error > allowed && 2 * rows <= most) {
+        for (; error > allowed && 2 * rows <= most; error /= kRowsFall)
+            rows *= 2;
+        latlong = read(rows);
         error = errorOfReading(latlong);
-        if (error > asked && error / kRowsFall <= allowed) latlong = read(2 * rows);
     }
+    // Twice as many as ever only if they are enough and these are not.
+    if (error > asked && error / kRowsFall <= allowed && !isSquareMap(probe.layout))
+        latlong = read(2 * rows);
     return latlong;
 }
 
