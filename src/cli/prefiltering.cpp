@@ -161,8 +161,8 @@ Panorama readFor(const Panorama& probe, std::span<const PrefilterRequest> reques
         latlong = read(rows);
         error = errorOfReading(latlong);
     }
-    // Twice as many as ever only if they are enough and these are not.
-    if (error > asked && error / kRowsFall <= allowed && !isSquareMap(probe.layout))
+    // Twice as many as ever only if they are enough and these are hardly.
+    if (error > 0.5 * asked && error / kRowsFall <= allowed && !isSquareMap(probe.layout))
         latlong = read(2 * rows);
     return latlong;
 }
