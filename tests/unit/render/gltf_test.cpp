@@ -68,7 +68,7 @@ void expectCode(float value, int code, bool is_color, const std::string& what) {
 
 // The square fills the frame: pixel i's centre is at x = (i + 0.5) / 9 - 1.
 constexpr int kSide = 18;
-Image draw(const Scene& scene, int samples = 1) {
+Image pictureOf(const Scene& scene, int samples = 1) {
     const double fov = 2 * std::atan(0.25) * 180 / std::numbers::pi;
     const Camera camera{{0, 0, 4}, {0, 0, 0}, {0, 1, 0}, fov};
     return Renderer(softwareContext(), scene, {kSide, kSide, samples, {}}).render(camera);
@@ -130,10 +130,10 @@ TEST_F(Gltf, EmissiveTextureAddsExactlyInAFurnace) {
         R"({"pbrMetallicRoughness":{"baseColorFactor":[0.5,0.25,1,1]},"emissiveTexture":{"index":0})";
     // Without the factor, which is 0 then, the texture does nothing.
     scene.object = read({color + "}", image("png", kPairPng)}).object;
-    const Image dark = draw(scene);
+    const Image dark = pictureOf(scene);
     scene.object =
         read({color + R"(,"emissiveFactor":[0.5,1,0.25]})", image("png", kPairPng)}).object;
-    const Image bright = draw(scene);
+    const Image bright = pictureOf(scene);
     const V3d reflected(1.5, 0.75, 3), factor(0.5, 1, 0.25);
     const V3d left(decoded(10), decoded(51), decoded(204));
     const V3d right(decoded(250), decoded(153), decoded(102));
@@ -168,7 +168,7 @@ TEST_F(Gltf, MetallicRoughnessTextureIsMultipliedByTheFactors) {
                          R"("metallicRoughnessTexture":{"index":0}}})",
                          image("png", kPairPng)})
                        .object;
-    const Image frame = draw(scene);
+    const Image frame = pictureOf(scene);
     const auto expected = [](double metallic, double roughness) {
         const double mirrored = 0.04 * (1 - roughness); // ((1.5 - 1) / (1.5 + 1))^2
         const V3d color(0.5, 0.25, 1);
@@ -200,7 +200,7 @@ TEST_F(Gltf, NormalTextureGoesAlongTheCoordinates) {
                                .object;
             const V3d texel = V3d(204, 128, 230) * (2 / 255.0) - V3d(1);
             const V3d bent = (c.right * texel.x + c.up * texel.y) * scale + V3d(0, 0, texel.z);
-            EXPECT_LT((pixel(draw(scene), 9, 9) - bent.normalized()).length(), 1e-5)
+            EXPECT_LT((pixel(pictureOf(scene), 9, 9) - bent.normalized()).length(), 1e-5)
                 << c.right << c.up << scale;
         }
     }
@@ -222,7 +222,7 @@ TEST_F(Gltf, AlphaMasksAndBlendsAsItsModeSays) {
                   image("png", png, R"(,"sampler":0)") + R"(,"samplers":[{"wrapS":33071}])"});
         EXPECT_TRUE(file.notes.empty());
         scene.object = std::move(file.object);
-        const Image drawn = draw(scene, samples);
+        const Image drawn = pictureOf(scene, samples);
         Imath::V2d sum(0);
         for (int y = 0; y < kSide; ++y)
             sum += Imath::V2d(drawn.at(2, y)[3], drawn.at(kSide - 3, y)[3]);
@@ -269,7 +269,7 @@ TEST_F(Gltf, TexturesGoOnAsTheirSamplersSay) {
                 .object;
         EXPECT_EQ(scene.object.textures.at(0).across, c.across);
         EXPECT_EQ(scene.object.textures.at(0).down, c.down);
-        const Image frame = draw(scene);
+        const Image frame = pictureOf(scene);
         for (int y = -2; y < 4; ++y) {
             for (int x = -2; x < 4; ++x) {
                 const int right = texelAt(x, c.across), low = texelAt(y, c.down);

@@ -32,15 +32,15 @@ Mesh leaningTriangle() {
 const Camera kFront{{0.4, 0.3, 4}, {0, 0, 0}, {0, 1, 0}, 40};
 
 /// The point of the plane z = 0 that a pixel's centre sees, and its barycentric coordinates.
-struct Hit {
+struct PlaneHit {
     V3d point;
     std::array<double, 3> weight;
     bool inside = false;
 };
-Hit hitAt(int x, int y, int size) {
+PlaneHit hitAt(int x, int y, int size) {
     const CameraRays rays = cameraRays(kFront, size, size);
     const V3d d = rays.direction(x + 0.5, y + 0.5);
-    Hit hit;
+    PlaneHit hit;
     hit.point = rays.eye - d * (rays.eye.z / d.z);
     hit.weight[2] = (hit.point.y + 1) / 2;
     hit.weight[1] = (1 - hit.weight[2] + hit.point.x) / 2;
@@ -68,7 +68,7 @@ TEST(Interpolation, OfNormalsColoursOrNothing) {
     int compared = 0;
     for (int y = 0; y < 48; ++y) {
         for (int x = 0; x < 48; ++x) {
-            const Hit hit = hitAt(x, y, 48);
+            const PlaneHit hit = hitAt(x, y, 48);
             if (!hit.inside) continue;
             V3d normal(0);
             double color = 0;
@@ -118,7 +118,7 @@ TEST(Interpolation, OfColoursUnderLightsIsTheSumAtVertices) {
     int compared = 0;
     for (int y = 0; y < 48; ++y) {
         for (int x = 0; x < 48; ++x) {
-            const Hit hit = hitAt(x, y, 48);
+            const PlaneHit hit = hitAt(x, y, 48);
             if (!hit.inside) continue;
             V3d expected(0);
             for (std::size_t k = 0; k < 3; ++k)
