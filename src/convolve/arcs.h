@@ -36,6 +36,10 @@ void addCurve(const Place& place, double from, double to, int least, double long
     const double length = whole.length(), turn = length > 0 ? 8 * whole.sagitta() / length : 0;
     const int pieces =
         std::max(least, static_cast<int>(std::ceil(std::max(length, turn) / longest)));
+    if (pieces == 1) {
+        outline.push_back(whole);
+        return;
+    }
     const double piece = (to - from) / pieces;
     for (int k = 0; k < pieces; ++k) {
         const V3d b = place(from + (k + 1) * piece);

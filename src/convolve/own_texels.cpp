@@ -48,8 +48,8 @@ Pixel kindOf(const MapExtent& map, int rows, int x, int y) {
 }
 
 constexpr int kTile = 16;
-/// Pixels whose points are kept: 256 MiB.
-constexpr std::size_t kMostKept = 1 << 22;
+/// Pixels whose points are kept: 64 MiB.
+constexpr std::size_t kMostKept = 1 << 20;
 
 /// Sets a tile's bounds, if it has pixels.
 bool measure(const Texels& texels, Tile& tile) {
