@@ -60,6 +60,7 @@ std::vector<double> litByTexels(const Image& probe, Layout layout, const Case& c
         axes.push_back(latlongDirection((t % (2 * c.rows) + 0.5) / (2 * c.rows),
                                         (t / (2 * c.rows) + 0.5) / c.rows));
     }
+    const double least = std::exp(-25 / c.exponent); // below, the lobe is 1e-11
     std::vector<double> sums(axes.size(), 0.0);
     for (int y = 0; y < probe.height; ++y) {
         for (int x = 0; x < probe.width; ++x) {
@@ -78,7 +79,7 @@ std::vector<double> litByTexels(const Image& probe, Layout layout, const Case& c
             for (std::size_t t = 0; t < sums.size(); ++t) {
                 for (std::size_t part = 0; part < directions.size(); ++part) {
                     const double cosine = axes[t].dot(directions[part]);
-                    if (cosine > (c.exponent > 1 ? 0.5 : 0))
+                    if (cosine > least)
                         sums[t] += scale * weights[part] * std::pow(cosine, c.exponent);
                 }
             }
