@@ -8,13 +8,14 @@
 namespace ibl {
 namespace {
 
-/// Whether the symmetry takes texel (x, y) to (i, j), its shape too: centres alone may meet by
-/// chance.
+/// Whether the symmetry takes texel (x, y) to (i, j), its shape too, which at borders is a part of
+/// it: centres alone may meet by chance.
 bool takesTo(const MapExtent& map, const Symmetry& symmetry, int x, int y, int i, int j) {
     constexpr double kSame = 1e-12;
     const auto place = [&](int column, int row, const V2d& off) {
-        return texelDirection(map.layout, map.width, map.height, column + 0.5 + off.x,
-                              row + 0.5 + off.y);
+        const auto [low, high] = ownPart(map.layout, map.width, map.height, column, row);
+        const V2d p = V2d(column + 0.5, row + 0.5) + (low + high) * 0.5 + (high - low) * off;
+        return texelDirection(map.layout, map.width, map.height, p.x, p.y);
     };
     const auto is = [&](const V3d& d, const V2d& off) {
         const auto other = place(i, j, off);

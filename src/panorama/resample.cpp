@@ -126,25 +126,19 @@ void cubeToCube(const Panorama& source, Panorama& result, Enlarging enlarging, i
 
 namespace {
 
-/// What square maps are converted from and to directly: other cubes are put into faces, and what
-/// becomes one of the exr layouts into the plain layout of its kind and size on the way.
+/// What square maps are converted from and to directly: other cubes of the family are put into
+/// faces on the way.
 Layout plainLayout(Layout layout) {
-    if (layout == Layout::exrLatlong) return Layout::latlong;
-    return isCube(layout) ? Layout::faces : layout;
+    return isCubeFamily(layout) ? Layout::faces : layout;
 }
 
-/// The same areas in the plain layout of an exr layout's kind, whose borders run through centres:
-/// each pixel is two by two, or half of them.
+/// The same areas in halfPixelsOf them.
 Panorama ofHalfPixels(const Panorama& source, int threads) {
-    const auto halved = [](int pixels) { return std::max(1, 2 * (pixels - 1)); };
-    const Image& image = source.image;
+    Panorama halves = halfPixelsOf(source);
     if (source.layout == Layout::exrCube) {
-        const int edge = halved(image.width);
-        Panorama halves{Layout::faces, Image(edge, 6 * edge)};
         cubeToCube(source, halves, Enlarging::hold, threads);
         return halves;
     }
-    Panorama halves{Layout::latlong, Image(halved(image.width), halved(image.height))};
     const LatlongPixels pixels(source);
     for (int y = 0; y < halves.image.height; ++y)
         for (int x = 0; x < halves.image.width; ++x)
@@ -154,6 +148,14 @@ Panorama ofHalfPixels(const Panorama& source, int threads) {
 }
 
 } // namespace
+
+Panorama halfPixelsOf(const Panorama& panorama) {
+    const auto halved = [](int pixels) { return std::max(1, 2 * (pixels - 1)); };
+    const Image& image = panorama.image;
+    const int width = halved(image.width);
+    if (panorama.layout == Layout::exrCube) return {Layout::faces, Image(width, 6 * width)};
+    return {Layout::latlong, Image(width, halved(image.height))};
+}
 
 void mergeBorder(Panorama& panorama) {
     if (!hasBorderRule(panorama.layout)) return;
@@ -229,7 +231,7 @@ Panorama resample(const Panorama& source, Layout to, int size, int threads, Enla
     if (isSquareMap(source.layout) || isSquareMap(to)) {
         const Layout from_plain = plainLayout(source.layout), to_plain = plainLayout(to);
         const bool halved = hasBorderRule(source.layout);
-        if (from_plain != source.layout && !halved) {
+        if (from_plain != source.layout) {
             const int source_size =
                 *layoutSize(source.layout, source.image.width, source.image.height);
             return resample(resample(source, from_plain, source_size, threads, enlarging), to, size,
@@ -247,6 +249,7 @@ Panorama resample(const Panorama& source, Layout to, int size, int threads, Enla
         } else {
             throughSquareMap(source, source, result, enlarging, threads);
         }
+        mergeBorder(result);
         return result;
     }
     Panorama result{to, Image(extent.x, extent.y)};

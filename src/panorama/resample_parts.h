@@ -19,9 +19,13 @@ void latlongToCube(const Panorama& source, Panorama& result, Enlarging enlarging
 void cubeToLatlong(const Panorama& source, Panorama& result, Enlarging enlarging, int threads,
                    Image* down = nullptr);
 void cubeToCube(const Panorama& source, Panorama& result, Enlarging enlarging, int threads);
-/// Where one of the two is a square map, the other one too, a lat-long or `faces`. What is read by
-/// area is `areas`: `source`, or where that has borders that run through centres the same in pixels
-/// of half the width.
+/// An image in the plain layout of an exr layout's kind, whose pixels are not set: of half the
+/// width, so that each of the panorama's, whose borders run through centres, is two by two of them
+/// or, at a border, one by two or one.
+Panorama halfPixelsOf(const Panorama& panorama);
+/// Where one of the two is a square map, the other one too, a lat-long, `faces` or of an exr
+/// layout. What is read by area is `areas`: `source`, or where that is of an exr layout the same in
+/// half pixels.
 void throughSquareMap(const Panorama& source, const Panorama& areas, Panorama& result,
                       Enlarging enlarging, int threads, Image* down = nullptr);
 

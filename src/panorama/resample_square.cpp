@@ -44,14 +44,16 @@ void cut(const Polygon& polygon, int axis, double line, Polygon& below, Polygon&
 
 class AreaReader {
 public:
-    AreaReader(const Panorama& source, const Panorama& result)
+    /// `cells` is the result, or where that has borders that run through centres one in pixels of
+    /// half the width, of which its texels are made.
+    AreaReader(const Panorama& source, const Panorama& cells)
         : source_(source),
-          result_(result),
+          result_(cells),
           sectors_(sectorsOf(source.layout)),
           width_(source.image.width),
           height_(source.image.height),
-          tolerance_(kFollow * std::sqrt(4 * kPi * pixelsOf(result.image)) /
-                     std::max(pixelsOf(source.image), pixelsOf(result.image))) {
+          tolerance_(kFollow * std::sqrt(4 * kPi * pixelsOf(cells.image)) /
+                     std::max(pixelsOf(source.image), pixelsOf(cells.image))) {
         for (int j = 0; j <= height_ && source.layout == Layout::latlong; ++j)
             rows_.push_back(-std::cos(kPi * j / height_));
     }
@@ -72,6 +74,17 @@ public:
                 }
             }
         }
+        if (sum_.area == 0) return false;
+        value = sum_.radiance / sum_.area;
+        return true;
+    }
+
+    /// The same of the cells in those columns and rows.
+    bool mean(const std::vector<int>& columns, const std::vector<int>& rows, V3d& value) {
+        sum_ = {};
+        for (const int y : rows)
+            for (const int x : columns)
+                read(x, y, 1);
         if (sum_.area == 0) return false;
         value = sum_.radiance / sum_.area;
         return true;
@@ -243,6 +256,11 @@ private:
 double pitchAt(const Panorama& p, int x, int y) {
     const int width = p.image.width, height = p.image.height;
     if (p.layout == Layout::latlong) return kPi / height;
+    if (p.layout == Layout::exrLatlong) return centrePitch(kPi, height, true);
+    if (p.layout == Layout::exrCube) { // of whole texels at borders too
+        const V3d d = *texelDirection(p.layout, width, height, x + 0.5, y + 0.5);
+        return centrePitch(2, width, true) * std::sqrt(solidAngleDensity(p.layout, d));
+    }
     if (p.layout == Layout::angular) return 2 * kPi / width;
     if (p.layout == Layout::mirrorBall) {
         const double rho = std::hypot((2.0 * x + 1) / width - 1, (2.0 * y + 1) / width - 1);
@@ -277,6 +295,43 @@ bool isWithinOnePixel(const Panorama& source, const Panorama& latlong, const V3d
     return radius < 0.1 && radius * stretch(source.layout, source.image.width, d, radius) < room;
 }
 
+/// The halves, of 2 (n - 1) between the first pixel's centre and the last one's, that pixel i of a
+/// row or a column of n is made of; around the sphere the first and the last are one.
+std::vector<int> halvesOf(int i, int n, bool around) {
+    const int count = std::max(1, 2 * (n - 1));
+    if (n == 1) return {0};
+    std::vector<int> halves;
+    for (const int half : {2 * i - 1, 2 * i}) {
+        if (around) {
+            halves.push_back((half + count) % count);
+        } else if (half >= 0 && half < count) {
+            halves.push_back(half);
+        }
+    }
+    return halves;
+}
+
+/// Where a texel of OpenEXR's cube, whose faces are turned, lies on OpenGL's face.
+struct CubeTexel {
+    int face, column, row;
+};
+
+CubeTexel cubeTexel(const Panorama& exr_cube, int x, int y) {
+    const int edge = exr_cube.image.width, row = y % edge;
+    // Off the border, where the next faces begin, but nearer to no other texel.
+    const auto inwards = [edge](int i) {
+        return i == 0 ? 0.75 : i == edge - 1 ? i + 0.25 : i + 0.5;
+    };
+    const V3d d =
+        *texelDirection(exr_cube.layout, edge, exr_cube.image.height, edge > 1 ? inwards(x) : 0.5,
+                        y - row + (edge > 1 ? inwards(row) : 0.5));
+    const CubePoint p = cubePoint(d);
+    const auto nearest = [edge](double s) {
+        return static_cast<int>(std::lround(0.5 * (s + 1) * (edge - 1)));
+    };
+    return {p.face, nearest(p.s), nearest(p.t)};
+}
+
 } // namespace
 
 void throughSquareMap(const Panorama& source, const Panorama& areas, Panorama& result,
@@ -285,10 +340,23 @@ void throughSquareMap(const Panorama& source, const Panorama& areas, Panorama& r
     const double pixel_size = hasBorderRule(source.layout) ? 2 : 1; // of the areas'
     const Image& from = areas.image;
     Image& image = result.image;
+    const bool border = hasBorderRule(result.layout), around = result.layout == Layout::exrLatlong;
+    const Panorama halves = border ? halfPixelsOf(result) : Panorama{};
     parallelFor(static_cast<std::size_t>(image.height), threads, [&](std::size_t row) {
-        AreaReader reader(areas, result);
+        AreaReader reader(areas, border ? halves : result);
         const int y = static_cast<int>(row);
         std::vector<MomentSum> moments(down ? image.width : 0);
+        const auto meanOfHalves = [&](int x, V3d& mean) {
+            if (around) {
+                return reader.mean(halvesOf(x, image.width, true), halvesOf(y, image.height, false),
+                                   mean);
+            }
+            const CubeTexel texel = cubeTexel(result, x, y);
+            std::vector<int> rows = halvesOf(texel.row, image.width, false);
+            for (int& half : rows)
+                half += texel.face * halves.image.width;
+            return reader.mean(halvesOf(texel.column, image.width, false), rows, mean);
+        };
         for (int x = 0; x < image.width; ++x) {
             const auto d =
                 texelDirection(result.layout, image.width, image.height, x + 0.5, y + 0.5);
@@ -312,7 +380,7 @@ void throughSquareMap(const Panorama& source, const Panorama& areas, Panorama& r
                 if (isWithinOnePixel(areas, result, *d, p)) {
                     const float* pixel = from.at(at.x, at.y);
                     value = V3d(pixel[0], pixel[1], pixel[2]) * share;
-                } else if (reader.mean(x, y, mean)) {
+                } else if (border ? meanOfHalves(x, mean) : reader.mean(x, y, mean)) {
                     value += mean * share;
                 } else {
                     share = 0;

@@ -83,9 +83,10 @@ TEST(NearOwnTexels, AreWhatAFineLatlongGives) {
     };
     for (const Case& c : {Case{Layout::hcross, 12, Layout::vstrip, 7},
                           {Layout::hcross, 12, Layout::mirrorBall, 6},
+                          {Layout::hcross, 12, Layout::exrCube, 4},
                           {Layout::exrCube, 13, Layout::latlong, 6},
                           {Layout::exrLatlong, 16, Layout::octahedral, 5},
-                          {Layout::octahedral, 24, Layout::vstrip, 5},
+                          {Layout::octahedral, 24, Layout::exrLatlong, 4},
                           {Layout::octahedral, 15, Layout::octahedral, 5},
                           {Layout::octahedral, 16, Layout::latlong, 24},
                           {Layout::angular, 24, Layout::vstrip, 5},
