@@ -8,6 +8,7 @@
 #include "core/parallel.h"
 #include "core/stopwatch.h"
 #include "panorama/layouts.h"
+#include "panorama/resample.h"
 
 #include <algorithm>
 
@@ -32,18 +33,22 @@ const Panorama& areasFor(const PlacedProbe& probe, const Lobe& lobe) {
 const NearRules& nearRulesFor(const PlacedProbe& probe, const Lobe& lobe, double max_error) {
     // Coarse probes' edges are long and few.
     constexpr double kCoarse = 0.5 * kPi / 100;
-    const auto angleOf = [&](const Panorama& source) {
-        return texelAngle(
-            {lobe, source.layout,
-             layoutSize(source.layout, source.image.width, source.image.height).value()});
-    };
-    const bool coarse = ownTexels(probe, lobe) && angleOf(*probe.source) > kCoarse;
+    const bool coarse = ownTexels(probe, lobe) && pixelAngle(*probe.source) > kCoarse;
     return nearRules(coarse ? std::min(max_error, 1e-5) : max_error);
 }
 
 Image nearMapOf(const PlacedProbe& probe, const NearKernel& kernel, const NearRules& rules,
                 const PrefilterRequest& request, const Footprint& footprint, int threads,
                 Progress* progress) {
+    // Faces have the most texels that share weights.
+    if (isCubeFamily(request.layout) && request.layout != Layout::faces) {
+        PrefilterRequest faces = request;
+        faces.layout = Layout::faces;
+        return resample({Layout::faces,
+                         nearMapOf(probe, kernel, rules, faces, footprint, threads, progress)},
+                        request.layout, request.size, threads)
+            .image;
+    }
     const NearField field =
         makeNearField(kernel, rules, probe.image.width, probe.image.height, threads);
     if (ownTexels(probe, request.lobe))

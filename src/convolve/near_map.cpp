@@ -126,14 +126,6 @@ V3d weightedSum(const Image& probe, const NearWeights& weights, const Move& move
 Image nearMap(const Panorama& probe, const Panorama& areas, const NearField& field,
               const PrefilterRequest& request, const Footprint& footprint, int threads,
               Progress* progress) {
-    if (isCubeFamily(request.layout) && request.layout != Layout::faces) {
-        PrefilterRequest faces = request;
-        faces.layout = Layout::faces;
-        return resample({Layout::faces,
-                         nearMap(probe, areas, field, faces, footprint, threads, progress)},
-                        request.layout, request.size, threads)
-            .image;
-    }
     const V2i size = layoutExtent(request.layout, request.size);
     const MapExtent map{request.layout, size.x, size.y, texelAngle(request)};
     const Image area =

@@ -13,8 +13,9 @@ namespace ibl {
 
 /// The mean over each texel's footprint of the kernel's convolution with a lat-long probe. What
 /// has no direction is 0. Texels whose kernel is within them, about, are the means of `areas`, the
-/// probe itself or what it was read from, and what the kernel moves across their outlines. Progress
-/// is told a step for each of the map's rows, if at all.
+/// probe itself or what it was read from, and what the kernel moves across their outlines. Of the
+/// cube family's layouts `faces` alone (nearMapOf). Progress is told a step for each of the map's
+/// rows, if at all.
 Image nearMap(const Panorama& probe, const Panorama& areas, const NearField& field,
               const PrefilterRequest& request, const Footprint& footprint, int threads,
               Progress* progress = nullptr);

@@ -217,25 +217,16 @@ V3d weightedSum(const Texels& texels, const OwnWeights& weights, const std::vect
 bool seesOwnTexels(const Panorama& probe, const Lobe& lobe) {
     constexpr double kWidest = 0.03, kTexels = 8;
     if (probe.layout == Layout::latlong || lobe.kernel == Kernel::charlie) return false;
-    const int size = layoutSize(probe.layout, probe.image.width, probe.image.height).value();
     // Beside borders fewer would leave no middle.
     constexpr int kLeastWithBorder = 5;
     const bool border = probe.layout == Layout::exrLatlong || probe.layout == Layout::exrCube;
-    if (border && size < kLeastWithBorder) return false;
-    return lobeWidth(lobe) < std::min(kWidest, kTexels * texelAngle({lobe, probe.layout, size}));
+    if (border && std::min(probe.image.width, probe.image.height) < kLeastWithBorder) return false;
+    return lobeWidth(lobe) < std::min(kWidest, kTexels * pixelAngle(probe));
 }
 
 Image nearMapOfOwnTexels(const Panorama& probe, const NearField& field,
                          const PrefilterRequest& request, const Footprint& footprint, int threads,
                          Progress* progress) {
-    if (isCubeFamily(request.layout) && request.layout != Layout::faces) {
-        PrefilterRequest faces = request;
-        faces.layout = Layout::faces;
-        return resample({Layout::faces,
-                         nearMapOfOwnTexels(probe, field, faces, footprint, threads, progress)},
-                        request.layout, request.size, threads)
-            .image;
-    }
     const Texels texels = texelsOf(probe, threads);
     const V2i size = layoutExtent(request.layout, request.size);
     const MapExtent map{request.layout, size.x, size.y, texelAngle(request)};

@@ -190,6 +190,12 @@ double texelAngle(const PrefilterRequest& request) {
     return (rows ? kPi : 0.5 * kPi) / request.size;
 }
 
+double pixelAngle(const Panorama& probe) {
+    return texelAngle({{},
+                       probe.layout,
+                       layoutSize(probe.layout, probe.image.width, probe.image.height).value()});
+}
+
 Footprint footprintOf(const Lobe& lobe, double texel, int degree) {
     return footprintFor(2 * lobeWidth(lobe), texel, degree, texel, 1);
 }

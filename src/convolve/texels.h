@@ -26,6 +26,8 @@ inline constexpr int kAnyDegree = 1 << 20;
 
 /// The angle that a texel of the map covers, about.
 double texelAngle(const PrefilterRequest& request);
+/// The same of a probe's pixels.
+double pixelAngle(const Panorama& probe);
 
 /// Where a lobe's diameter (that of half its mass) is two texels or more, a texel is its centre's
 /// value; where it is one texel or less, the mean over the footprint; in between, the mean over the

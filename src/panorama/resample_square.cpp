@@ -74,9 +74,7 @@ public:
                 }
             }
         }
-        if (sum_.area == 0) return false;
-        value = sum_.radiance / sum_.area;
-        return true;
+        return meanOfSum(value);
     }
 
     /// The same of the cells in those columns and rows.
@@ -85,9 +83,7 @@ public:
         for (const int y : rows)
             for (const int x : columns)
                 read(x, y, 1);
-        if (sum_.area == 0) return false;
-        value = sum_.radiance / sum_.area;
-        return true;
+        return meanOfSum(value);
     }
 
     /// What a lat-long's pixel (x, y) is made of, its area not above 0 where nothing was found.
@@ -101,6 +97,12 @@ public:
 private:
     static double pixelsOf(const Image& image) {
         return static_cast<double>(image.width) * image.height;
+    }
+
+    bool meanOfSum(V3d& value) const {
+        if (sum_.area == 0) return false;
+        value = sum_.radiance / sum_.area;
+        return true;
     }
 
     void read(double x, double y, double size) {
